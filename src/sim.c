@@ -1,0 +1,209 @@
+/* One simulation: samples in, results out. Precision is chosen here, the grip is taken and let go here
+ * ("the hold-release control of a virtual hand", 5); the statics is in statics/. */
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "error.h"
+#include "statics/core.h"
+
+struct stic_sim {
+  stic_scene scene;
+  stic_settings settings;
+  const stic_core *core;
+  void *state;              /* of the core */
+  stic_collider *collider;
+  stic_event *events;
+
+  bool started;
+  bool held;
+  bool grip_down;           /* the button at the last sample */
+  int64_t t_ns;             /* of the last sample */
+  double hand_angle;        /* raw, unwrapped */
+  double angle_offset;      /* target angle minus hand angle, from the grip on */
+  double z, z_offset;       /* object's depth; object minus hand */
+  stic_hand hand;           /* at the last sample */
+  int64_t slips;
+  bool timed;
+  int64_t collide_ns, total_ns;
+  stic_core_report report;
+};
+
+static const stic_core *core_of(stic_precision precision) {
+  switch (precision) {
+    case STIC_F32: return &stic_core_f32;
+    case STIC_F80: return &stic_core_f80;
+    case STIC_F64: break;
+  }
+  return &stic_core_f64;
+}
+
+stic_status stic_sim_create(const stic_scene *scene, const stic_settings *settings, stic_sim **out, stic_error *err) {
+  assert(scene && settings && out);
+  *out = NULL;
+  stic_status status = stic_scene_validate(scene, err);
+  if (status != STIC_OK) return status;
+  if (settings->level == STIC_LEVEL_SUBSTEP && (settings->substeps < 1 || settings->substeps > 1000000))
+    return stic_error_set(err, STIC_USAGE, NULL, 0, "substeps must be from 1 to 1000000, not %d", settings->substeps);
+  if (!(settings->h_min > 0 && settings->h_min <= 1))
+    return stic_error_set(err, STIC_USAGE, NULL, 0, "h_min must be above 0 and at most 1 object size, not %g", settings->h_min);
+  stic_sim *sim = calloc(1, sizeof *sim);
+  if (sim) {
+    sim->core = core_of(settings->precision);
+    sim->state = malloc(sim->core->memory_size());
+    sim->events = malloc(STIC_EVENTS_MAX * sizeof *sim->events);
+    sim->collider = stic_collider_create(scene, stic_scene_size(scene));
+  }
+  if (!sim || !sim->state || !sim->events || !sim->collider) {
+    stic_sim_destroy(sim);
+    return stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "not enough memory for a simulation");
+  }
+  sim->scene = *scene;
+  sim->settings = *settings;
+  sim->z = scene->z;
+  sim->core->init(sim->state, scene, settings, sim->collider, sim->events, STIC_EVENTS_MAX);
+  *out = sim;
+  return STIC_OK;
+}
+
+void stic_sim_destroy(stic_sim *sim) {
+  if (!sim) return;
+  stic_collider_destroy(sim->collider);
+  free(sim->events);
+  free(sim->state);
+  free(sim);
+}
+
+static int64_t now_ns(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
+}
+
+/* 2 atan2(qz, qw), unwrapped to the turn nearest to the last angle; a rotation by pi about an axis in the
+ * plane has none, and keeps the last. */
+static double hand_angle(const stic_sim *sim, const double *q) {
+  const double pi = 3.14159265358979323846;
+  if (q[2] == 0 && q[3] == 0) return sim->hand_angle;
+  double angle = 2 * atan2(q[2], q[3]);
+  if (angle > pi) angle -= 2 * pi;
+  else if (angle <= -pi) angle += 2 * pi;
+  if (!sim->started) return angle;
+  return angle + 2 * pi * round((sim->hand_angle - angle) / (2 * pi));
+}
+
+/* Distance in the plane from a point to the object's polygon; 0 inside. */
+static double distance_to_object(const stic_scene *scene, double x, double y, double theta, double px, double py) {
+  double c = cos(theta), s = sin(theta), dx = px - x, dy = py - y;
+  double bx = c * dx + s * dy, by = c * dy - s * dx, best = INFINITY;
+  bool inside = true;
+  for (int i = 0; i < scene->vertex_count; i++) {
+    const double *a = scene->vertices[i], *b = scene->vertices[(i + 1) % scene->vertex_count];
+    double ex = b[0] - a[0], ey = b[1] - a[1], rx = bx - a[0], ry = by - a[1];
+    double along = fmax(0, fmin(1, (rx * ex + ry * ey) / (ex * ex + ey * ey)));
+    inside = inside && ex * ry - ey * rx >= 0;
+    best = fmin(best, hypot(rx - along * ex, ry - along * ey));
+  }
+  return inside ? 0 : best;
+}
+
+static void add_hand_event(stic_sim *sim, stic_event_kind kind, const stic_sample *sample) {
+  stic_event e = {(double)sample->t_ns * 1e-9, kind, -1, -1, sample->position[0], sample->position[1], 0};
+  sim->core->add_event(sim->state, e);
+}
+
+/* The offsets between hand and object stay as they are at this moment. */
+static void take(stic_sim *sim, const stic_sample *sample) {
+  double x, y, theta, bx, by;
+  sim->core->pose(sim->state, &x, &y, &theta);
+  if (sim->scene.hold == STIC_HOLD_START) {
+    bx = sim->scene.holding_point[0], by = sim->scene.holding_point[1];
+    sim->angle_offset = sim->z_offset = 0;
+  } else {
+    double c = cos(theta), s = sin(theta), dx = sample->position[0] - x, dy = sample->position[1] - y;
+    bx = c * dx + s * dy, by = c * dy - s * dx;
+    sim->angle_offset = theta - sim->hand_angle;
+    sim->z_offset = sim->z - sample->position[2];
+  }
+  sim->core->take(sim->state, bx, by);
+  sim->held = true;
+  add_hand_event(sim, STIC_EVENT_TAKE, sample);
+}
+
+static bool within_reach(const stic_sim *sim, const stic_sample *sample) {
+  double x, y, theta;
+  sim->core->pose(sim->state, &x, &y, &theta);
+  return distance_to_object(&sim->scene, x, y, theta, sample->position[0], sample->position[1]) <= sim->scene.reach;
+}
+
+/* True if the object was taken at this very sample. */
+static bool update_grip(stic_sim *sim, const stic_sample *sample) {
+  bool down = (sample->buttons & STIC_BUTTON_GRIP) != 0 && !sample->lost;
+  bool pressed = down && !sim->grip_down;
+  sim->grip_down = down;
+  if (sim->scene.hold == STIC_HOLD_START) {
+    if (!sim->held) take(sim, sample);
+    return !sim->started;
+  }
+  if (sim->held && !down) {
+    sim->held = false;
+    add_hand_event(sim, STIC_EVENT_RELEASE, sample);
+  }
+  if (sim->held || !pressed || !within_reach(sim, sample)) return false;
+  take(sim, sample);
+  return true;
+}
+
+void stic_sim_step(stic_sim *sim, const stic_sample *sample, stic_result *result) {
+  assert(sim && sample && result);
+  assert(!sim->started || sample->t_ns > sim->t_ns);
+  int64_t start = sim->timed ? now_ns() : 0;
+  sim->core->clear_events(sim->state);
+  memset(&sim->report, 0, sizeof sim->report);
+  sim->hand_angle = hand_angle(sim, sample->orientation);
+  bool taken = update_grip(sim, sample);
+  stic_hand target = {sample->position[0], sample->position[1], sim->hand_angle + (sim->held ? sim->angle_offset : 0)};
+  double t = (double)sample->t_ns * 1e-9;
+  if (sim->held) {
+    if (taken) sim->core->relax(sim->state, target, t, &sim->report);
+    else sim->core->follow(sim->state, sim->hand, target, (double)sim->t_ns * 1e-9, t, &sim->report);
+    sim->z = sample->position[2] + sim->z_offset;
+  }
+  sim->slips += sim->report.slips;
+  sim->hand = target;
+  sim->t_ns = sample->t_ns;
+  sim->started = true;
+
+  result->t_ns = sample->t_ns;
+  result->z = sim->z;
+  result->hand_x = sample->position[0];
+  result->hand_y = sample->position[1];
+  result->hand_z = sample->position[2];
+  result->hand_theta = target.phi;
+  result->slips = sim->slips;
+  result->flags = sim->report.flags | (sample->lost ? STIC_FLAG_LOST : 0u);
+  result->iterations = sim->report.iterations;
+  sim->core->result(sim->state, target, sim->held, result);
+  if (sim->timed) {
+    sim->collide_ns = stic_collider_take_ns(sim->collider);
+    sim->total_ns = now_ns() - start;
+  }
+}
+
+const stic_event *stic_sim_events(const stic_sim *sim, int *count) {
+  *count = sim->core->event_count(sim->state);
+  return sim->events;
+}
+
+void stic_sim_time_stages(stic_sim *sim, bool on) {
+  sim->timed = on;
+  stic_collider_clock(sim->collider, on);
+  sim->collide_ns = sim->total_ns = 0;
+}
+
+void stic_sim_stage_times(const stic_sim *sim, int64_t *collide_ns, int64_t *total_ns) {
+  *collide_ns = sim->collide_ns;
+  *total_ns = sim->total_ns;
+}

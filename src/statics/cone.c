@@ -1,0 +1,442 @@
+/* Coulomb's law as cones [4, eqs (5), (6)], and the question of JUDGE: are there contact forces inside
+ * their cones that balance the load, eqs (1), (2)? Where they are not unique the least-norm member is
+ * shown: it is unique and continuous in time. The choice never moves the object. */
+#include "statics.h"
+
+enum { BALANCE_STEPS_MAX = 64, NORM_STEPS_MAX = 64 };
+
+/* The spring's wrench on the object about a point; the contacts have to supply its negative. */
+static wrench load_about(const core *c, vec point) {
+  wrench w = {spring_force(c), spring_moment_about(c, point)};
+  return w;
+}
+
+static bool all_at_one_vertex(const core *c) {
+  for (int i = 1; i < c->contact_count; i++)
+    if (c->contacts[i].vertex != c->contacts[0].vertex) return false;
+  return c->contact_count > 0;
+}
+
+static vec cone_ray(const surface *s, int side) {
+  return v_mix(s->n, side ? s->mu_s : -s->mu_s, s->t);
+}
+
+/* The planes w . f >= 0 that bound the sum of the cones at the one vertex that has all contacts. A single
+ * contact's are scaled so that w . f is mu_s N -+ T (and N); a corner's are of unit length. */
+static int vertex_cone_planes(const core *c, vec planes[3]) {
+  if (c->contact_count == 1) {
+    const surface *s = &c->body.surfaces[c->contacts[0].surface];
+    planes[0] = v_mix(v_neg(s->t), s->mu_s, s->n);
+    planes[1] = v_mix(s->t, s->mu_s, s->n);
+    planes[2] = s->n;
+    return 3;
+  }
+  vec rays[CONES_MAX];
+  int count = 0, found = 0;
+  for (int i = 0; i < c->contact_count; i++)
+    for (int side = 0; side < 2; side++) {
+      vec r = cone_ray(&c->body.surfaces[c->contacts[i].surface], side);
+      rays[count++] = v_scale(r, 1 / v_length(r));
+    }
+  for (int i = 0; i < count && found < 3; i++)
+    for (int side = 0; side < 2 && found < 3; side++) {
+      vec w = side ? v_perp(rays[i]) : v_neg(v_perp(rays[i]));
+      bool bounds = true;
+      for (int k = 0; k < count && bounds; k++) bounds = v_dot(w, rays[k]) >= -4 * REAL_EPSILON;
+      for (int k = 0; k < found && bounds; k++) /* not twice */
+        bounds = v_length(v_sub(w, planes[k])) > 8 * REAL_EPSILON;
+      if (bounds) planes[found++] = w;
+    }
+  return found;
+}
+
+/* ---- two contacts at different vertices: the forces that balance are a line [5.3] ---- */
+
+/* Force of the second contact = second + x d, of the first = -load - that; d joins the two places. */
+typedef struct force_line {
+  vec first, second, d; /* at x = 0; d is of unit length */
+  const surface *a, *b;
+} force_line;
+
+static force_line two_contact_forces(const core *c, wrench load_about_first, int i, int k) {
+  force_line l;
+  l.a = &c->body.surfaces[c->contacts[i].surface];
+  l.b = &c->body.surfaces[c->contacts[k].surface];
+  vec d = v_sub(c->contacts[k].place, c->contacts[i].place);
+  real length = v_length(d);
+  l.d = v_scale(d, 1 / length);
+  l.second = v_scale(v_perp(l.d), -load_about_first.m / length);
+  l.first = v_neg(v_add(load_about_first.f, l.second));
+  return l;
+}
+
+/* The six constraints value + slope x >= 0 on the line: mu N -+ T >= -slack and N >= -slack for both. */
+typedef struct line_constraints {
+  real value[6], slope[6];
+} line_constraints;
+
+static line_constraints constraints_of(const force_line *l, real slack) {
+  line_constraints q;
+  for (int side = 0; side < 2; side++) {
+    const surface *s = side ? l->b : l->a;
+    vec at = side ? l->second : l->first, along = side ? l->d : v_neg(l->d);
+    vec planes[3] = {v_mix(v_neg(s->t), s->mu_s, s->n), v_mix(s->t, s->mu_s, s->n), s->n};
+    for (int k = 0; k < 3; k++) {
+      real slope = v_dot(planes[k], along);
+      q.value[3 * side + k] = v_dot(planes[k], at) + slack;
+      q.slope[3 * side + k] = r_abs(slope) <= 4 * REAL_EPSILON * (1 + s->mu_s) ? 0 : slope;
+    }
+  }
+  return q;
+}
+
+/* The part of the line inside both cones; the tightest constraints in tightest[], -1 for none. False if it
+ * is empty; the constraints in conflict are then the tightest two, or twice one that no x can meet. */
+static bool feasible_interval(const line_constraints *q, real *low, real *high, int tightest[2]) {
+  *low = -R_HUGE;
+  *high = R_HUGE;
+  tightest[0] = tightest[1] = -1;
+  for (int k = 0; k < 6; k++) {
+    if (q->slope[k] > 0 && -q->value[k] / q->slope[k] > *low) {
+      *low = -q->value[k] / q->slope[k];
+      tightest[0] = k;
+    } else if (q->slope[k] < 0 && q->value[k] / -q->slope[k] < *high) {
+      *high = q->value[k] / -q->slope[k];
+      tightest[1] = k;
+    }
+  }
+  for (int k = 0; k < 6; k++)
+    if (q->slope[k] == 0 && q->value[k] < 0) {
+      tightest[0] = tightest[1] = k;
+      return false;
+    }
+  return *low <= *high;
+}
+
+/* How far constraints i (from below) and k (from above) are from conflict; linear in the load. */
+static real agreement(const line_constraints *q, const int pair_of[2]) {
+  int i = pair_of[0], k = pair_of[1];
+  return i == k ? q->value[i] : q->value[k] * q->slope[i] - q->value[i] * q->slope[k];
+}
+
+/* ---- any number of contacts ---- */
+
+/* Generators of the contacts' cones as wrenches about a point, in units of force (moment over size). */
+typedef struct generators {
+  int count;
+  real column[CONES_MAX][3];
+} generators;
+
+static void cone_generators(const core *c, vec about, generators *g) {
+  g->count = 0;
+  for (int i = 0; i < c->contact_count; i++) {
+    const surface *s = &c->body.surfaces[c->contacts[i].surface];
+    vec arm = v_sub(c->contacts[i].place, about);
+    for (int side = 0; side < 2; side++) {
+      vec r = cone_ray(s, side);
+      r = v_scale(r, 1 / v_length(r));
+      real *column = g->column[g->count++];
+      column[0] = r.x, column[1] = r.y, column[2] = v_cross(arm, r) / c->body.size;
+    }
+  }
+}
+
+static real dot3(const real *a, const real *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* Solves the n x n system (n <= 6) in place by elimination with pivoting; false if singular. */
+static bool solve_small(int n, real m[6][7]) {
+  for (int k = 0; k < n; k++) {
+    int pivot = k;
+    for (int i = k + 1; i < n; i++)
+      if (r_abs(m[i][k]) > r_abs(m[pivot][k])) pivot = i;
+    if (r_abs(m[pivot][k]) <= 64 * REAL_EPSILON) return false;
+    for (int j = k; j <= n; j++) {
+      real swap = m[k][j];
+      m[k][j] = m[pivot][j];
+      m[pivot][j] = swap;
+    }
+    for (int i = 0; i < n; i++) {
+      if (i == k) continue;
+      real factor = m[i][k] / m[k][k];
+      for (int j = k; j <= n; j++) m[i][j] -= factor * m[k][j];
+    }
+  }
+  for (int k = 0; k < n; k++) m[k][n] /= m[k][k];
+  return true;
+}
+
+/* Least squares over the passive columns: weights that come nearest to the target. */
+static bool fit_columns(const generators *g, const int *passive, int n, const real target[3], real *weights) {
+  real m[6][7];
+  for (int i = 0; i < n; i++) {
+    for (int k = 0; k < n; k++) m[i][k] = dot3(g->column[passive[i]], g->column[passive[k]]);
+    m[i][n] = dot3(g->column[passive[i]], target);
+  }
+  if (!solve_small(n, m)) return false;
+  for (int i = 0; i < n; i++) weights[i] = m[i][n];
+  return true;
+}
+
+/* The point of the cone of generators nearest to the target (non-negative least squares; the passive set
+ * never exceeds three columns, as the space has three dimensions). Returns the distance; `weights` has
+ * one entry per generator; `away` points from the nearest point to the target. */
+static real nearest_in_cone(const generators *g, const real target[3], real *weights, real away[3]) {
+  int passive[4], n = 0;
+  real scale = r_sqrt(dot3(target, target));
+  for (int i = 0; i < g->count; i++) weights[i] = 0;
+  for (int k = 0; k < 3; k++) away[k] = target[k];
+  for (int step = 0; step < BALANCE_STEPS_MAX; step++) {
+    int best = -1;
+    real best_gain = 8 * REAL_EPSILON * scale;
+    for (int i = 0; i < g->count; i++) {
+      bool used = false;
+      for (int k = 0; k < n; k++) used |= passive[k] == i;
+      real gain = dot3(g->column[i], away);
+      if (!used && gain > best_gain) best_gain = gain, best = i;
+    }
+    if (best < 0 || n == 3) break;
+    passive[n++] = best;
+    real trial[4];
+    while (n > 0) {
+      if (!fit_columns(g, passive, n, target, trial)) {
+        n--; /* the new column depends on the others: it can give nothing */
+        if (n == 0 || !fit_columns(g, passive, n, target, trial)) break;
+      }
+      real step_length = 1;
+      int leaving = -1;
+      for (int k = 0; k < n; k++)
+        if (trial[k] <= 0) {
+          real part = weights[passive[k]] / (weights[passive[k]] - trial[k]);
+          if (leaving < 0 || part < step_length) step_length = part, leaving = k;
+        }
+      for (int k = 0; k < n; k++) weights[passive[k]] += step_length * (trial[k] - weights[passive[k]]);
+      if (leaving < 0) break;
+      weights[passive[leaving]] = 0;
+      passive[leaving] = passive[--n];
+    }
+    for (int k = 0; k < 3; k++) {
+      away[k] = target[k];
+      for (int i = 0; i < n; i++) away[k] -= weights[passive[i]] * g->column[passive[i]][k];
+    }
+    if (dot3(away, away) <= REAL_EPSILON * REAL_EPSILON * scale * scale) break;
+  }
+  return r_sqrt(dot3(away, away));
+}
+
+static void needed_wrench(const core *c, vec about, real target[3]) {
+  wrench load = load_about(c, about);
+  target[0] = -load.f.x, target[1] = -load.f.y, target[2] = -load.m / c->body.size;
+}
+
+static bool cones_balance(const core *c) {
+  generators g;
+  real target[3], weights[CONES_MAX], away[3];
+  vec about = c->contacts[0].place;
+  cone_generators(c, about, &g);
+  needed_wrench(c, about, target);
+  return nearest_in_cone(&g, target, weights, away) <= TOLERANCE * c->body.size;
+}
+
+/* JUDGE: forces exist that balance with N >= 0 and |T| <= mu_s N. */
+static bool loads_balance(const core *c) {
+  real slack = TOLERANCE * c->body.size;
+  if (c->contact_count == 0) return true;
+  if (all_at_one_vertex(c)) { /* its moment is zero: HOLD or a slide has seen to that */
+    vec planes[3], f = v_neg(spring_force(c));
+    int count = vertex_cone_planes(c, planes);
+    for (int k = 0; k < count; k++)
+      if (v_dot(planes[k], f) < -slack) return false;
+    return true;
+  }
+  if (c->contact_count == 2) {
+    real low, high;
+    int tightest[2];
+    force_line l = two_contact_forces(c, load_about(c, c->contacts[0].place), 0, 1);
+    line_constraints q = constraints_of(&l, slack);
+    return feasible_interval(&q, &low, &high, tightest);
+  }
+  return cones_balance(c);
+}
+
+/* ---- the forces that are shown ---- */
+
+/* Into the cone, for what the tolerances of JUDGE let stand a little outside. */
+static vec clamp_to_cone(const surface *s, vec f) {
+  real n = r_max(0, v_dot(f, s->n)), limit = s->mu_s * n;
+  real t = r_max(-limit, r_min(limit, v_dot(f, s->t)));
+  return v_add(v_scale(s->n, n), v_scale(s->t, t));
+}
+
+static void least_norm_of_two(const core *c, vec *forces) {
+  force_line l = two_contact_forces(c, load_about(c, c->contacts[0].place), 0, 1);
+  real low, high, x = v_dot(v_sub(l.first, l.second), l.d) / 2; /* least |first|^2 + |second|^2 */
+  int tightest[2];
+  line_constraints q = constraints_of(&l, 0);
+  if (!feasible_interval(&q, &low, &high, tightest)) {
+    q = constraints_of(&l, TOLERANCE * c->body.size);
+    feasible_interval(&q, &low, &high, tightest);
+  }
+  if (low <= high) x = r_max(low, r_min(high, x));
+  forces[0] = v_mix(l.first, -x, l.d);
+  forces[1] = v_mix(l.second, x, l.d);
+}
+
+/* The least-norm member of the polyhedral set { f_i in cone i, sum of wrenches = target }: a primal active
+ * set method on the generators' weights, from the basic solution of nearest_in_cone. Each force is kept
+ * as (N, T); a bound is one side of its cone. */
+typedef struct norm_problem {
+  int count;                          /* contacts */
+  real wrench_n[CONTACTS_MAX][3], wrench_t[CONTACTS_MAX][3], mu[CONTACTS_MAX];
+  real n[CONTACTS_MAX], t[CONTACTS_MAX];
+  int bound[CONTACTS_MAX];            /* 0 free, +1 T = mu N, -1 T = -mu N, 2 N = T = 0 */
+} norm_problem;
+
+/* Direction of freedom of a bound force: wrench columns per contact, 0 to 2 of them. */
+static int free_columns(const norm_problem *q, int i, real columns[2][3], real basis[2][2]) {
+  if (q->bound[i] == 2) return 0;
+  if (q->bound[i] != 0) {
+    real length = r_sqrt(1 + q->mu[i] * q->mu[i]);
+    basis[0][0] = 1 / length, basis[0][1] = q->bound[i] * q->mu[i] / length;
+    for (int k = 0; k < 3; k++)
+      columns[0][k] = basis[0][0] * q->wrench_n[i][k] + basis[0][1] * q->wrench_t[i][k];
+    return 1;
+  }
+  for (int k = 0; k < 3; k++) columns[0][k] = q->wrench_n[i][k], columns[1][k] = q->wrench_t[i][k];
+  basis[0][0] = 1, basis[0][1] = 0, basis[1][0] = 0, basis[1][1] = 1;
+  return 2;
+}
+
+/* Least norm with the bounds as equalities: f = B B^T A^T y, sum A B B^T A^T y = target. The Gram matrix may
+ * be singular (few columns); a rounding-sized ridge keeps it solvable without moving the answer. */
+static bool bounded_least_norm(const norm_problem *q, const real target[3], real *n, real *t, real y[3]) {
+  real m[6][7] = {{0}};
+  real columns[2][3], basis[2][2], trace = 0;
+  for (int i = 0; i < q->count; i++) {
+    int free = free_columns(q, i, columns, basis);
+    for (int k = 0; k < free; k++)
+      for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++) m[a][b] += columns[k][a] * columns[k][b];
+  }
+  for (int a = 0; a < 3; a++) trace += m[a][a], m[a][3] = target[a];
+  if (trace == 0) return false;
+  for (int a = 0; a < 3; a++) m[a][a] += 256 * REAL_EPSILON * trace;
+  if (!solve_small(3, m)) return false;
+  for (int a = 0; a < 3; a++) y[a] = m[a][3];
+  for (int i = 0; i < q->count; i++) {
+    int free = free_columns(q, i, columns, basis);
+    n[i] = t[i] = 0;
+    for (int k = 0; k < free; k++) {
+      real along = dot3(columns[k], y);
+      n[i] += along * basis[k][0];
+      t[i] += along * basis[k][1];
+    }
+  }
+  return true;
+}
+
+static void least_norm_of_many(const core *c, vec *forces) {
+  generators g;
+  norm_problem q;
+  real target[3], away[3], weights[CONES_MAX], n[CONTACTS_MAX], t[CONTACTS_MAX], y[3];
+  vec about = c->contacts[0].place;
+  cone_generators(c, about, &g);
+  needed_wrench(c, about, target);
+  nearest_in_cone(&g, target, weights, away);
+  for (int k = 0; k < 3; k++) target[k] -= away[k]; /* what the cones can give: within tolerance all of it */
+  q.count = c->contact_count;
+  for (int i = 0; i < q.count; i++) {
+    const surface *s = &c->body.surfaces[c->contacts[i].surface];
+    vec arm = v_sub(c->contacts[i].place, about);
+    q.mu[i] = s->mu_s;
+    q.wrench_n[i][0] = s->n.x, q.wrench_n[i][1] = s->n.y, q.wrench_n[i][2] = v_cross(arm, s->n) / c->body.size;
+    q.wrench_t[i][0] = s->t.x, q.wrench_t[i][1] = s->t.y, q.wrench_t[i][2] = v_cross(arm, s->t) / c->body.size;
+    real scale = 1 / r_sqrt(1 + q.mu[i] * q.mu[i]), low = weights[2 * i], high = weights[2 * i + 1];
+    q.n[i] = (low + high) * scale;
+    q.t[i] = (high - low) * q.mu[i] * scale;
+    q.bound[i] = low > 0 && high > 0 ? 0 : high > 0 ? 1 : low > 0 ? -1 : 2;
+    if (q.mu[i] == 0 && q.bound[i] == 0) q.bound[i] = 1;
+  }
+  for (int step = 0; step < NORM_STEPS_MAX; step++) {
+    bool solved = bounded_least_norm(&q, target, n, t, y);
+    real part = 1;
+    int hit = -1, side = 0;
+    for (int i = 0; solved && i < q.count; i++) {
+      /* Largest step for which mu N -+ T >= 0 stays. */
+      for (int k = -1; k <= 1; k += 2) {
+        if (q.bound[i] == 2 || (q.bound[i] == k)) continue;
+        real now = q.mu[i] * q.n[i] - k * q.t[i], then = q.mu[i] * n[i] - k * t[i];
+        if (q.mu[i] == 0) now = q.n[i], then = n[i];
+        if (then >= 0 || now - then <= 0) continue;
+        real reach = r_max(0, now) / (now - then);
+        if (reach < part) part = reach, hit = i, side = k;
+      }
+    }
+    for (int i = 0; solved && i < q.count; i++) {
+      q.n[i] += part * (n[i] - q.n[i]);
+      q.t[i] += part * (t[i] - q.t[i]);
+    }
+    if (solved && hit >= 0) {
+      q.bound[hit] = q.bound[hit] == 0 && q.mu[hit] > 0 ? side : 2;
+      continue;
+    }
+    if (!solved) break;
+    /* Optimal under these bounds: release the one whose force would rather go inside. */
+    int release = -1;
+    real best = 64 * REAL_EPSILON * r_sqrt(dot3(target, target));
+    int release_to = 0;
+    for (int i = 0; i < q.count; i++) {
+      if (q.bound[i] == 0) continue;
+      real pull_n = dot3(q.wrench_n[i], y) - q.n[i], pull_t = dot3(q.wrench_t[i], y) - q.t[i];
+      if (q.bound[i] == 2) {
+        for (int k = -1; k <= 1; k += 2) {
+          real gain = (pull_n + k * q.mu[i] * pull_t) / r_sqrt(1 + q.mu[i] * q.mu[i]);
+          if (gain > best) best = gain, release = i, release_to = k;
+        }
+      } else if (q.mu[i] > 0) {
+        real gain = (q.mu[i] * pull_n - q.bound[i] * pull_t) / r_sqrt(1 + q.mu[i] * q.mu[i]);
+        if (gain > best) best = gain, release = i, release_to = 0;
+      }
+    }
+    if (release < 0) break;
+    q.bound[release] = release_to;
+  }
+  for (int i = 0; i < q.count; i++) {
+    const surface *s = &c->body.surfaces[c->contacts[i].surface];
+    forces[i] = v_add(v_scale(s->n, q.n[i]), v_scale(s->t, q.t[i]));
+  }
+}
+
+/* Contact forces in the order of the contacts, over k_p. */
+static void least_norm_forces(const core *c, vec *forces) {
+  if (c->contact_count == 1) forces[0] = v_neg(spring_force(c));
+  else if (c->contact_count == 2 && !all_at_one_vertex(c)) least_norm_of_two(c, forces);
+  else if (c->contact_count > 0) least_norm_of_many(c, forces);
+  for (int i = 0; i < c->contact_count; i++)
+    forces[i] = clamp_to_cone(&c->body.surfaces[c->contacts[i].surface], forces[i]);
+}
+
+/* The contacts hold whatever the hand does: their cones span every wrench. For two contacts this is when
+ * the line that joins them runs inside both cones. */
+static bool is_wedged(const core *c) {
+  if (c->contact_count < 2 || all_at_one_vertex(c)) return false;
+  generators g;
+  real weights[CONES_MAX], away[3];
+  cone_generators(c, c->contacts[0].place, &g);
+  if (c->contact_count == 2) {
+    vec d = v_sub(c->contacts[1].place, c->contacts[0].place);
+    const surface *a = &c->body.surfaces[c->contacts[0].surface], *b = &c->body.surfaces[c->contacts[1].surface];
+    for (int sense = 0; sense < 2; sense++, d = v_neg(d)) {
+      bool inside_a = a->mu_s * v_dot(a->n, d) > r_abs(v_dot(a->t, d));
+      bool inside_b = b->mu_s * -v_dot(b->n, d) > r_abs(v_dot(b->t, d));
+      if (inside_a && inside_b) return true;
+    }
+    return false;
+  }
+  for (int axis = 0; axis < 3; axis++)
+    for (int sense = -1; sense <= 1; sense += 2) {
+      real target[3] = {0, 0, 0};
+      target[axis] = sense;
+      if (nearest_in_cone(&g, target, weights, away) > TOLERANCE) return false;
+    }
+  return true;
+}

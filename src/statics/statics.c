@@ -1,0 +1,136 @@
+/* The statics core as one compilation per precision (STIC_REAL_BITS), and its table of functions. */
+#include "statics.h"
+
+#include <assert.h>
+#include <string.h>
+
+#include "spring.c"
+#include "curve.c"
+#include "touch.c"
+#include "path.c"
+#include "cone.c"
+#include "hold.c"
+#include "slide.c"
+#include "flow.c"
+#include "judge.c"
+#include "relax.c"
+#include "follow.c"
+#include "row.c"
+
+static hand hand_in(const core *c, stic_hand h) {
+  hand r = {v_make((real)(h.x / c->unit), (real)(h.y / c->unit)), (real)h.phi};
+  return r;
+}
+
+static size_t core_memory_size(void) { return sizeof(core); }
+
+/* A power of two not below the size: scaling by it is exact. */
+static double length_unit(double size) {
+  int exponent;
+  frexp(size, &exponent);
+  return ldexp(1, exponent);
+}
+
+static void init_surfaces(body *b, const stic_scene *scene, double unit) {
+  b->surface_count = scene->surface_count;
+  for (int i = 0; i < b->surface_count; i++) {
+    const stic_surface *from = &scene->surfaces[i];
+    surface *to = &b->surfaces[i];
+    double normal[2];
+    stic_normal_from_degrees(from->normal_deg, normal);
+    to->n = v_make((real)normal[0], (real)normal[1]);
+    to->t = v_make(to->n.y, -to->n.x);
+    to->point = v_make((real)(from->point[0] / unit), (real)(from->point[1] / unit));
+    to->mu_s = (real)from->friction.mu_static;
+    to->mu_d = (real)from->friction.mu_dynamic;
+    b->world_extent = r_max(b->world_extent, r_abs(to->point.x) + r_abs(to->point.y));
+  }
+}
+
+static void core_init(void *memory, const stic_scene *scene, const stic_settings *settings, stic_collider *collider,
+                      stic_event *events, int event_capacity) {
+  core *c = memory;
+  memset(c, 0, sizeof *c);
+  double size = stic_scene_size(scene);
+  c->settings = *settings;
+  c->unit = length_unit(size);
+  c->force_unit = scene->stiffness * c->unit;
+  c->collider = collider;
+  c->events = events;
+  c->event_capacity = event_capacity;
+  body *b = &c->body;
+  b->vertex_count = scene->vertex_count;
+  for (int i = 0; i < b->vertex_count; i++) {
+    b->vertices[i] = v_make((real)(scene->vertices[i][0] / c->unit), (real)(scene->vertices[i][1] / c->unit));
+    b->radius = r_max(b->radius, v_length(b->vertices[i]));
+  }
+  b->size = (real)(size / c->unit);
+  b->kappa = (real)(scene->rotational_stiffness / scene->stiffness / c->unit / c->unit);
+  init_surfaces(b, scene, c->unit);
+  c->p = v_make((real)(scene->x / c->unit), (real)(scene->y / c->unit));
+  set_angle(c, (real)scene->angle);
+  c->b = v_make((real)(scene->holding_point[0] / c->unit), (real)(scene->holding_point[1] / c->unit));
+  /* What starts within tolerance of a surface starts in contact, stuck. */
+  stic_core_report report = {0};
+  c->report = &report;
+  c->hand.h = c->p;
+  c->noise = gap_noise(c);
+  add_touching(c);
+  c->report = NULL;
+  c->event_count = 0;
+}
+
+static void core_take(void *memory, double body_x, double body_y) {
+  core *c = memory;
+  c->b = v_make((real)(body_x / c->unit), (real)(body_y / c->unit));
+  c->window_open = false;
+  c->sliding = false;
+}
+
+static void core_relax(void *memory, stic_hand h, double t, stic_core_report *report) {
+  core *c = memory;
+  c->report = report;
+  c->sliding = false;
+  relax(c, hand_in(c, h), t);
+  c->window_open = c->happened;
+}
+
+static void core_follow(void *memory, stic_hand from, stic_hand to, double t_from, double t_to,
+                        stic_core_report *report) {
+  core *c = memory;
+  c->report = report;
+  hand a = hand_in(c, from), b = hand_in(c, to);
+  switch (c->settings.level) {
+    case STIC_LEVEL_FRAME: relax(c, b, t_to); break;
+    case STIC_LEVEL_SUBSTEP: follow_substeps(c, a, b, t_from, t_to); break;
+    case STIC_LEVEL_EVENT: follow_event(c, a, b, t_from, t_to); break;
+  }
+}
+
+static void core_pose(const void *memory, double *x, double *y, double *theta) {
+  const core *c = memory;
+  *x = (double)c->p.x * c->unit;
+  *y = (double)c->p.y * c->unit;
+  *theta = (double)c->theta;
+}
+
+static int core_event_count(const void *memory) { return ((const core *)memory)->event_count; }
+static void core_clear_events(void *memory) { ((core *)memory)->event_count = 0; }
+
+static void core_add_event(void *memory, stic_event event) {
+  core *c = memory;
+  if (c->event_count < c->event_capacity) c->events[c->event_count++] = event;
+}
+
+const stic_core STIC_CORE = {
+    .memory_size = core_memory_size,
+    .init = core_init,
+    .take = core_take,
+    .relax = core_relax,
+    .follow = core_follow,
+    .result = core_result,
+    .pose = core_pose,
+    .event_count = core_event_count,
+    .clear_events = core_clear_events,
+    .add_event = core_add_event,
+};

@@ -1,0 +1,210 @@
+/* Inside of the statics core. statics.c includes the parts below it as one compilation per precision, so
+ * everything here is static to it; each part holds one idea of the paper or of the rule RELAX.
+ *
+ * Scaled quantities. Lengths are in units of a power of two near the object's size, forces are divided
+ * by k_p (so a force is a length: the spring's stretch), moments by k_p too (an area), and
+ * kappa = k_theta / k_p. Poses therefore cannot depend on the absolute stiffness, and scaling lengths or
+ * forces by powers of two leaves every bit of the computation as it was. */
+#ifndef STIC_STATICS_H
+#define STIC_STATICS_H
+
+#include "core.h"
+#include "real.h"
+
+enum {
+  CONTACTS_MAX = STIC_CONTACTS_MAX,
+  PAIRS_MAX = 2 * STIC_CONTACTS_MAX, /* opened pairs that have not left yet */
+  STAGES_MAX = 64,                   /* of one RELAX */
+  SAMPLE_EVENTS_MAX = 10000,         /* RELAX calls on one hand path at level event */
+  CONES_MAX = 2 * CONTACTS_MAX
+};
+
+/* Where judgements draw the line, in the scaled units (model: 1e-12 k_p size, 1e-14 k_p size^2). Single
+ * precision cannot hold these; there they are its own rounding. */
+#define TOLERANCE r_max(R(1e-12), 16 * REAL_EPSILON)
+#define MOMENT_ZERO r_max(R(1e-14), 4 * REAL_EPSILON)
+
+typedef struct surface {
+  vec point, n, t;      /* a point on it, outward normal, tangent (n turned by -90 degrees) */
+  real mu_s, mu_d;
+} surface;
+
+/* A vertex on a surface [3]; while stuck its place does not move by a single bit. */
+typedef struct contact {
+  int vertex, surface;
+  vec place;
+} contact;
+
+typedef struct pair {
+  int vertex, surface;
+} pair;
+
+/* Object and surfaces: what does not change during a run. */
+typedef struct body {
+  int vertex_count, surface_count;
+  vec vertices[STIC_VERTICES_MAX];       /* body coordinates */
+  real size;                             /* largest distance between two vertices */
+  real kappa;                            /* k_theta / k_p */
+  real radius;                           /* farthest vertex from the body's origin */
+  surface surfaces[STIC_SURFACES_MAX];
+  real world_extent;                     /* largest coordinate of surface points: sets rounding noise */
+} body;
+
+/* Hand [5]: position and target angle. */
+typedef struct hand {
+  vec h;
+  real phi;
+} hand;
+
+/* Which pairs can touch within `reach` of the pose at which the detector was last asked. */
+typedef struct near_list {
+  bool valid;
+  vec p;
+  real theta, reach;
+  int count;
+  int surfaces[STIC_SURFACES_MAX];
+  uint64_t vertices[STIC_SURFACES_MAX];  /* mask per listed surface */
+} near_list;
+
+typedef struct core {
+  body body;
+  stic_settings settings;
+  double unit;             /* m per scaled length, a power of two */
+  double force_unit;       /* N per scaled force: k_p unit */
+  stic_collider *collider;
+  near_list near;
+  double *gaps_out;        /* scratch of the detector */
+
+  /* state */
+  vec p;                   /* body origin */
+  real theta;
+  vec rot;                 /* (cos theta, sin theta) */
+  vec b;                   /* holding point, body coordinates [2] */
+  contact contacts[CONTACTS_MAX]; /* in the order in which they touched */
+  int contact_count;
+  pair opened[PAIRS_MAX];  /* opened and not left yet: no new touch until they have */
+  int opened_count;
+  bool window_open;        /* the last judgement was an event: the next comes h_min further */
+  bool sliding;            /* mu_s = mu_d: the contacts slide on without events, and ... */
+  real sliding_sense;      /* ... in this sense: along t for one contact or an edge, of theta for a trammel */
+
+  /* during one RELAX */
+  hand hand;
+  double event_time;
+  bool opened_any;         /* a contact has opened in this RELAX */
+  bool turn_done;          /* the last slide reached the zero of its moment: no turn right after it */
+  bool happened;           /* touch, opening, slip: an event */
+  real longest_slide;
+  real noise;              /* rounding of a gap at these coordinates */
+
+  stic_core_report *report;
+  stic_event *events;
+  int event_count, event_capacity;
+  double gap_scratch[STIC_SURFACES_MAX];
+  uint64_t mask_scratch[STIC_SURFACES_MAX];
+} core;
+
+/* ---- spring.c: hand and object joined by a virtual spring [2, 4] ---- */
+static vec rotate(vec rot, vec v);
+static vec world_vertex(const core *c, int vertex);
+static vec holding_point(const core *c);
+static void set_angle(core *c, real theta);
+static vec spring_force(const core *c);                 /* at the holding point, eq (3) */
+static real spring_moment(const core *c);               /* eq (4) */
+static real spring_moment_about(const core *c, vec point);
+static real gap_of(const core *c, vec point, int s);    /* signed distance from surface s, > 0 free */
+
+/* ---- curve.c: functions of one angle, their first crossing and first zero ---- */
+
+/* k + c cos x + s sin x */
+typedef struct wave {
+  real k, c, s;
+} wave;
+
+/* k0 + k1 x + first harmonic + second harmonic */
+typedef struct curve {
+  real k0, k1, c1, s1, c2, s2;
+} curve;
+
+static real wave_at(const wave *w, real x);
+static real wave_rate(const wave *w, real x);
+static real wave_first_down(const wave *w, real noise, real x_max); /* R_HUGE: never */
+static real wave_next_zero(const wave *w, real x_max);
+static real curve_at(const curve *g, real x);
+static bool curve_first_zero(const curve *g, real x_max, real *x, int *iterations);
+static real drift_first_down(wave w, real turn, real drift, real noise, int *iterations);
+
+/* ---- touch.c: which vertex reaches which surface first [5] ---- */
+typedef struct touch {
+  real at;                 /* R_HUGE: none */
+  int vertex, surface;
+} touch;
+
+static void near_update(core *c, real travel);
+static bool is_contact(const core *c, int vertex, int on);
+static bool is_opened(const core *c, int vertex, int on);
+static void forget_opened_that_left(core *c);
+static void add_contact(core *c, int vertex, int on);
+static void remove_contact(core *c, int index);
+static void add_touching(core *c); /* every vertex within tolerance of a surface becomes a contact */
+static touch first_touch_moving(core *c, vec travel, real turn);
+
+/* ---- path.c: one degree of freedom, the pose follows from the angle [5.1, 5.3] ---- */
+typedef struct path {
+  int vertex;              /* reference vertex */
+  real dir;                /* sense of the turn; x >= 0 below is the angle turned */
+  vec origin;              /* its place at x = 0 */
+  vec t;                   /* it moves along this ... */
+  real xi_c, xi_s;         /* ... by xi = xi_c (cos x - 1) + xi_s sin x */
+  vec a, a_turn;           /* holding point from the reference vertex, and dir * perp(a) */
+  wave force_x, force_y;   /* the spring's force */
+  curve drive;             /* dir * unbalanced moment: the turn goes on while it is positive */
+} path;
+
+static path path_pinned(const core *c, int vertex, vec place, real dir);
+static path path_sliding(const core *c, int vertex, vec place, vec t, vec n, real friction, real dir);
+static wave path_force_along(const path *f, vec axis);
+static wave path_gap(const core *c, const path *f, int vertex, int on);
+static vec path_place(const path *f, real x);
+static touch path_first_touch(core *c, const path *f, real x_max);
+static void path_set_pose(core *c, const path *f, real x);
+
+/* ---- cone.c: Coulomb's cones, and which forces can balance the load [4] ---- */
+typedef struct wrench {
+  vec f;
+  real m;
+} wrench;
+
+static wrench load_about(const core *c, vec point);
+static int vertex_cone_planes(const core *c, vec planes[3]); /* all contacts at one vertex */
+static bool loads_balance(const core *c);                    /* JUDGE's question */
+static bool all_at_one_vertex(const core *c);
+static void least_norm_forces(const core *c, vec *forces);
+static bool is_wedged(const core *c);
+
+/* ---- hold.c, slide.c, judge.c, flow.c, relax.c ---- */
+static bool hold(core *c);
+static bool turn_about(core *c, int vertex, vec place);
+
+static void slide_vertex(core *c, int index);
+static bool edge_or_slot_starts(const core *c, int first, int second, real *sense, vec *velocity);
+static void slide_edge_or_slot(core *c, int first, int second, real sense);
+static bool trammel_starts(const core *c, int first, int second, real *dir);
+static void slide_trammel(core *c, int first, int second, real dir);
+static bool are_parallel(const core *c, int first, int second);
+
+typedef enum verdict { VERDICT_REST, VERDICT_ACTED, VERDICT_STUCK } verdict;
+static verdict judge(core *c);
+static bool viscous_flow(core *c);
+static void relax(core *c, hand target, double t);
+
+/* ---- follow.c: accuracy levels ---- */
+static void follow_event(core *c, hand from, hand to, double t_from, double t_to);
+
+/* ---- statics.c: SI at the border ---- */
+static hand hand_in(const core *c, stic_hand h);
+static void core_pose(const void *memory, double *x, double *y, double *theta);
+
+static void record(core *c, stic_event_kind kind, int vertex, int surface, vec where, real length);
+
+#endif
