@@ -34,7 +34,7 @@ enum {
   STIC_DECISION_OPEN_ALL = 1 << 8,       /* 3. free */
   STIC_DECISION_FLOW = 1 << 9,           /* 4. viscous flow */
   STIC_DECISION_SNAP = 1 << 10,          /* a pinned equilibrium vanished */
-  STIC_DECISION_CREEPLESS_SLIDE = 1 << 11 /* mu_s = mu_d: slid on without events */
+  STIC_DECISION_SLIDE_ON = 1 << 11       /* mu_s = mu_d: slid on without events */
 };
 
 typedef struct stic_core {

@@ -252,6 +252,18 @@ static next_event find_event(core *c, const hand_path *w, real tau) {
 
 /* ---- level event ---- */
 
+/* Sliding on without events counts as one slip per sample. */
+static void count_slide_on(core *c, double t) {
+  if (c->longest_slide_on > R(1e-12) * c->body.size) {
+    c->report->flags |= STIC_FLAG_SLIPPED;
+    c->report->slips++;
+    c->event_time = t;
+    for (int i = 0; i < c->contact_count && c->sliding; i++)
+      record(c, STIC_EVENT_SLIP, c->contacts[i].vertex, c->contacts[i].surface, c->contacts[i].place, c->longest_slide_on);
+  }
+  c->longest_slide_on = 0;
+}
+
 static void follow_event(core *c, hand from, hand to, double t_from, double t_to) {
   hand_path w = {from, to, v_sub(to.h, from.h), to.phi - from.phi};
   real path_length = v_length(w.travel) + c->body.size * r_abs(w.turn);
@@ -262,17 +274,27 @@ static void follow_event(core *c, hand from, hand to, double t_from, double t_to
       c->report->flags |= STIC_FLAG_LIMIT;
       tau = 1;
       relax(c, to, t_to);
-      c->window_open = c->happened;
-      return;
+      c->window_open = c->happened && !c->sliding;
+      break;
     }
     next_event e = NO_EVENT;
     real next = tau + window;
-    if (!c->window_open) {
+    if (c->sliding) {
+      real part;
+      hand start = hand_at(&w, tau);
+      slide_end end = slide_on(c, &start, &to, &part);
+      tau += part * (1 - tau);
+      if (end == SLIDE_ON_TO_SAMPLE) break;
+      if (end == SLIDE_ON_STUCK) {
+        c->sliding = false;
+        continue;
+      }
+      next = tau + AFTER_EVENT;
+    } else if (!c->window_open) {
       c->noise = gap_noise(c);
       e = find_event(c, &w, tau);
-      next = e.at + AFTER_EVENT;
+      next = e.at < R_HUGE ? e.at + AFTER_EVENT : 1;
     }
-    if (e.at == R_HUGE && !c->window_open) next = 1;
     real offset = AFTER_EVENT, theta = c->theta;
     for (int i = 0; i < ESCALATIONS_MAX; i++) {
       next = r_min(1, r_max(next, tau + REAL_EPSILON));
@@ -289,9 +311,10 @@ static void follow_event(core *c, hand from, hand to, double t_from, double t_to
       record(c, STIC_EVENT_SNAP, held ? c->contacts[0].vertex : -1, held ? c->contacts[0].surface : -1,
              held ? c->contacts[0].place : holding_point(c), r_abs(c->theta - theta));
     }
-    c->window_open = c->happened;
+    c->window_open = c->happened && !c->sliding;
     tau = next;
   }
+  count_slide_on(c, t_to);
 }
 
 static void follow_substeps(core *c, hand from, hand to, double t_from, double t_to) {

@@ -79,7 +79,9 @@ static bool slides_on_rest(core *c, const choice *o) {
   const surface *s = &c->body.surfaces[k->surface];
   vec force = spring_force(c);
   real normal = -v_dot(force, s->n), tangential = v_dot(force, s->t);
-  if (normal <= 0 || r_abs(tangential) <= s->mu_d * normal) return false;
+  /* A slide that was stopped on its way is at mu_d N but for rounding: nothing drives it. */
+  real above = TOLERANCE * c->body.size;
+  if (normal <= above || r_abs(tangential) <= s->mu_d * normal + above) return false;
   real sigma = r_sign(tangential), shift = tangential - sigma * s->mu_d * normal;
   vec arm = v_sub(holding_point(c), k->place);
   real moment = spring_moment_about(c, k->place) - shift * v_cross(arm, s->t);

@@ -22,6 +22,8 @@ static void relax(core *c, hand target, double t) {
   c->opened_any = false;
   c->turn_done = false;
   c->happened = false;
+  c->sliding = false;
+  c->slid_to_zero = false;
   c->longest_slide = 0;
   c->noise = gap_noise(c);
   c->report->relaxations++;
@@ -29,8 +31,14 @@ static void relax(core *c, hand target, double t) {
   for (; stage < STAGES_MAX; stage++) {
     if (hold(c)) continue;
     forget_opened_that_left(c);
+    bool after_slide = c->slid_to_zero;
+    c->slid_to_zero = false;
     verdict v = judge(c);
-    if (v == VERDICT_REST) break;
+    if (v == VERDICT_REST) {
+      c->sliding = after_slide && slides_on(c);
+      c->sliding_sense = c->slide_sense;
+      break;
+    }
     if (v == VERDICT_STUCK) {
       c->report->flags |= STIC_FLAG_NO_ANSWER;
       break;

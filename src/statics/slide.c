@@ -16,6 +16,11 @@ static void slide_to(core *c, contact *k, vec place) {
   record(c, STIC_EVENT_SLIP, k->vertex, k->surface, on_surface, length);
 }
 
+static void slide_ended(core *c, bool at_zero, real sense) {
+  c->slid_to_zero = at_zero;
+  c->slide_sense = sense;
+}
+
 static void finish_slide(core *c, touch t) {
   if (t.at < R_HUGE) add_contact(c, t.vertex, t.surface);
   add_touching(c);
@@ -52,6 +57,7 @@ static void slide_vertex(core *c, int index) {
     }
   }
   slide_to(c, k, place);
+  slide_ended(c, c->turn_done, sigma);
   finish_slide(c, t);
 }
 
@@ -101,14 +107,16 @@ static void slide_edge_or_slot(core *c, int first, int second, real sense) {
   contact *i = &c->contacts[first], *k = &c->contacts[second];
   pair_normals p;
   if (!normals_along_walls(c, first, second, sense, &p)) return;
-  real length = r_min(falls_to_zero(p.drive, p.drive_rate),
-                      r_min(falls_to_zero(p.first, p.first_rate), falls_to_zero(p.second, p.second_rate)));
+  real balance = falls_to_zero(p.drive, p.drive_rate);
+  real lift = r_min(falls_to_zero(p.first, p.first_rate), falls_to_zero(p.second, p.second_rate));
+  real length = r_min(balance, lift);
   vec travel = v_scale(c->body.surfaces[i->surface].t, sense * length);
   touch t = first_touch_moving(c, travel, 0);
   if (t.at < R_HUGE) travel = v_scale(travel, t.at);
   c->p = v_add(c->p, travel);
   slide_to(c, i, v_add(i->place, travel));
   slide_to(c, k, v_add(k->place, travel));
+  slide_ended(c, balance <= lift && t.at == R_HUGE, sense);
   finish_slide(c, t);
 }
 
@@ -204,6 +212,7 @@ static void slide_trammel(core *c, int first, int second, real dir) {
   wave na, nb;
   curve drive;
   real x = 0;
+  bool zero = false;
   for (int piece = 0; piece < REVERSALS_MAX; piece++) {
     if (!trammel_forces(c, &m, first, second, x, &na, &nb, &drive)) break;
     wave na_on = wave_shift(&na, x), nb_on = wave_shift(&nb, x);
@@ -214,7 +223,7 @@ static void slide_trammel(core *c, int first, int second, real dir) {
     real reversal = r_min(wave_next_zero(&va, 2 * R_PI), wave_next_zero(&vb, 2 * R_PI));
     real lift = r_min(wave_first_down(&na_on, 0, 2 * R_PI), wave_first_down(&nb_on, 0, 2 * R_PI));
     real step, limit = r_min(r_min(reversal, lift), 2 * R_PI);
-    bool zero = curve_first_zero(&drive_on, limit, &step, &c->report->iterations);
+    zero = curve_first_zero(&drive_on, limit, &step, &c->report->iterations);
     x += step;
     if (zero || lift <= reversal) break;
   }
@@ -223,5 +232,6 @@ static void slide_trammel(core *c, int first, int second, real dir) {
   path_set_pose(c, &m.path, x);
   slide_to(c, i, path_place(&m.path, x));
   slide_to(c, k, world_vertex(c, k->vertex));
+  slide_ended(c, zero && t.at == R_HUGE, dir);
   finish_slide(c, t);
 }

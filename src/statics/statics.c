@@ -14,6 +14,7 @@
 #include "flow.c"
 #include "judge.c"
 #include "relax.c"
+#include "slide_on.c"
 #include "follow.c"
 #include "row.c"
 

@@ -95,6 +95,9 @@ typedef struct core {
   bool turn_done;          /* the last slide reached the zero of its moment: no turn right after it */
   bool happened;           /* touch, opening, slip: an event */
   real longest_slide;
+  real longest_slide_on;   /* slid without events since the last sample */
+  bool slid_to_zero;       /* the last action was a slide that reached its balance */
+  real slide_sense;        /* ... in this sense (see sliding_sense) */
   real noise;              /* rounding of a gap at these coordinates */
 
   stic_core_report *report;
@@ -182,7 +185,7 @@ static bool all_at_one_vertex(const core *c);
 static void least_norm_forces(const core *c, vec *forces);
 static bool is_wedged(const core *c);
 
-/* ---- hold.c, slide.c, judge.c, flow.c, relax.c ---- */
+/* ---- hold.c, slide.c, judge.c, flow.c, relax.c, slide_on.c ---- */
 static bool hold(core *c);
 static bool turn_about(core *c, int vertex, vec place);
 
@@ -197,6 +200,7 @@ typedef enum verdict { VERDICT_REST, VERDICT_ACTED, VERDICT_STUCK } verdict;
 static verdict judge(core *c);
 static bool viscous_flow(core *c);
 static void relax(core *c, hand target, double t);
+static bool slides_on(const core *c);
 
 /* ---- follow.c: accuracy levels ---- */
 static void follow_event(core *c, hand from, hand to, double t_from, double t_to);
