@@ -12,7 +12,8 @@ struct stic_collider {
   dGeomID surfaces[STIC_SURFACES_MAX];  /* one plane each, moved out by the reach at every query */
   double normals[STIC_SURFACES_MAX][2];
   int vertex_count, surface_count;
-  double unit, radius;                  /* radius: farthest vertex from the body's origin, in units */
+  double unit, radius;                  /* radius: farthest vertex from the centre, in units */
+  double centre[2];                     /* mean of the vertices: ODE wants its origin inside */
   bool clock_on;
   int64_t elapsed_ns;
   /* ODE keeps pointers to these. */
@@ -26,10 +27,12 @@ struct stic_collider {
 static void extrude(stic_collider *c, const stic_scene *scene) {
   int n = scene->vertex_count;
   unsigned *face = c->polygons;
+  for (int i = 0; i < n; i++)
+    for (int k = 0; k < 2; k++) c->centre[k] += scene->vertices[i][k] / c->unit / n;
   for (int i = 0; i < n; i++) {
-    double x = scene->vertices[i][0] / c->unit, y = scene->vertices[i][1] / c->unit;
-    int next = (i + 1) % n;
-    double ex = scene->vertices[next][0] / c->unit - x, ey = scene->vertices[next][1] / c->unit - y;
+    double x = scene->vertices[i][0] / c->unit - c->centre[0], y = scene->vertices[i][1] / c->unit - c->centre[1];
+    const double *next = scene->vertices[(i + 1) % n];
+    double ex = next[0] / c->unit - c->centre[0] - x, ey = next[1] / c->unit - c->centre[1] - y;
     double length = sqrt(ex * ex + ey * ey);
     dReal *side = c->planes + 4 * i;
     side[0] = ey / length, side[1] = -ex / length, side[2] = 0, side[3] = (ey * x - ex * y) / length;
@@ -129,9 +132,11 @@ int stic_collide_near(stic_collider *c, const double *gaps, double cosine, doubl
   const dMatrix3 rotation = {cosine, -sine, 0, 0, sine, cosine, 0, 0, 0, 0, 1, 0};
   dGeomSetRotation(c->object, rotation);
   double widened = reach / c->unit * (1 + 1e-7) + 1e-7;
+  double cx = cosine * c->centre[0] - sine * c->centre[1], cy = sine * c->centre[0] + cosine * c->centre[1];
   int found = 0;
   for (int s = 0; s < c->surface_count; s++) {
-    masks[s] = near_vertices(c, s, gaps[s] / c->unit, cosine, sine, widened);
+    double gap = gaps[s] / c->unit + c->normals[s][0] * cx + c->normals[s][1] * cy;
+    masks[s] = near_vertices(c, s, gap, cosine, sine, widened);
     found += masks[s] != 0;
   }
   if (c->clock_on) c->elapsed_ns += now_ns() - start;

@@ -24,6 +24,7 @@ int main(int argc, char **argv) {
   int event = !strcmp(argv[1], "event"), verbose = argc > 4;
   unsigned long seed0 = strtoul(argv[2], 0, 10), count = strtoul(argv[3], 0, 10);
   unsigned covered = 0;
+  if (getenv("ORC_STEP")) orc_step_factor = atof(getenv("ORC_STEP"));
   long frames = 0, bad_cases = 0, flow = 0, noanswer = 0, limits = 0;
   double worst = 0;
   for (unsigned long seed = seed0; seed < seed0 + count; seed++) {

@@ -1,0 +1,66 @@
+/* The program `stiction`: finds the command and hands over. */
+#include "cli.h"
+
+#include <stdio.h>
+#include <string.h>
+
+typedef struct command {
+  const char *name;
+  int (*run)(int argc, const char **argv);
+  const char *about;
+} command;
+
+static const command commands[] = {
+  {"replay", stic_cmd_replay, "solve a trace, as fast as it can: log, events, timing, pictures"},
+  {"run", stic_cmd_run, "solve a device's samples in real time"},
+  {"check", stic_cmd_check, "tell all errors and warnings of a scene and a trace"},
+  {"bench", stic_cmd_bench, "measure: speed"},
+};
+
+#define COMMAND_COUNT (sizeof commands / sizeof commands[0])
+
+static int show_help(void)
+{
+  printf("Usage: stiction COMMAND ...\n\n"
+         "Where an object held in the hand rests when it is pressed against surfaces with friction.\n\n"
+         "Commands:\n");
+  for (size_t i = 0; i < COMMAND_COUNT; i++)
+    printf("  %-8s %s\n", commands[i].name, commands[i].about);
+  printf("\nstiction COMMAND --help says more; stiction --version says which one this is.\n\n"
+         "Exit codes:\n"
+         "  0  done\n"
+         "  1  a check or bench failed\n"
+         "  2  wrong usage, or an option that this build lacks\n"
+         "  3  bad input file: FILE:LINE: what was found and what was expected\n"
+         "  4  no device, or it was lost for good\n"
+         "  5  could not write, or there is no usable renderer\n"
+         "  6  out of memory\n"
+         "  128 + n  ended by signal n\n");
+  return (int)stic_cli_flush();
+}
+
+static int show_version(void)
+{
+  printf("stiction %s\nMIT licence\n", stic_version());
+  return (int)stic_cli_flush();
+}
+
+int main(int argc, char **argv)
+{
+  const char *name = argc > 1 ? argv[1] : "";
+
+  stic_cli_catch_signals();
+  if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0)
+    return show_help();
+  if (strcmp(name, "--version") == 0)
+    return show_version();
+  for (size_t i = 0; i < COMMAND_COUNT; i++) {
+    if (strcmp(name, commands[i].name) == 0)
+      return commands[i].run(argc - 1, (const char **)(argv + 1));
+  }
+  if (*name)
+    stic_cli_say("unknown command '%.40s'; see stiction --help", name);
+  else
+    stic_cli_say("which command? See stiction --help");
+  return STIC_USAGE;
+}

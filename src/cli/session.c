@@ -1,0 +1,179 @@
+#include "session.h"
+
+#include "../error.h"
+#include "../io/events_csv.h"
+#include "../io/log_csv.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+void stic_session_options_free(stic_session_options *options)
+{
+  free(options->accuracy);
+  free(options->precision);
+  free(options->log);
+  free(options->events);
+  free(options->timing);
+  stic_cli_free_list(options->set);
+  memset(options, 0, sizeof *options);
+}
+
+static stic_status read_settings(stic_session *s, const stic_session_options *o, stic_error *err)
+{
+  stic_status status = STIC_OK;
+
+  stic_settings_init(&s->settings);
+  if (o->accuracy)
+    status = stic_settings_set_accuracy(&s->settings, o->accuracy, err);
+  if (status == STIC_OK && o->precision)
+    status = stic_settings_set_precision(&s->settings, o->precision, err);
+  if (status == STIC_OK)
+    status = stic_cli_overrides(o->set, &s->overrides, &s->override_count, err);
+  return status;
+}
+
+/* Refuses what cannot be written before the first sample is solved, not after an hour. */
+static stic_status open_outputs(stic_session *s, const stic_session_options *o, stic_error *err)
+{
+  stic_status status = STIC_OK;
+
+  if (o->log)
+    status = stic_outfile_open(o->log, &s->log, err);
+  if (status == STIC_OK && o->events)
+    status = stic_outfile_open(o->events, &s->events, err);
+  if (status == STIC_OK && o->timing) {
+    stic_outfile *probe = NULL;
+
+    status = stic_outfile_open(o->timing, &probe, err);
+    stic_outfile_abort(probe);
+    if (status == STIC_OK)
+      status = stic_session_time(s, err);
+    s->timing_path = o->timing;
+  }
+  return status;
+}
+
+stic_status stic_session_open(stic_session *s, const stic_session_options *o, const char *scene_path,
+                              const char *input_kind, const char *input, stic_error *err)
+{
+  stic_status status;
+
+  memset(s, 0, sizeof *s);
+  s->started_ns = stic_clock_ns();
+  status = read_settings(s, o, err);
+  if (status == STIC_OK)
+    status = stic_scene_read(scene_path, s->overrides, s->override_count, &s->scene, err);
+  if (status == STIC_OK)
+    status = stic_sim_create(&s->scene, &s->settings, &s->sim, err);
+  if (status == STIC_OK)
+    status = open_outputs(s, o, err);
+  if (status != STIC_OK) {
+    stic_session_close(s);
+    return status;
+  }
+  if (s->log) {
+    const stic_log_provenance provenance = {scene_path,   input_kind,   input,
+                                            &s->settings, s->overrides, s->override_count};
+
+    stic_log_begin(s->log, &provenance);
+  }
+  if (s->events)
+    stic_events_begin(s->events);
+  return STIC_OK;
+}
+
+stic_status stic_session_time(stic_session *s, stic_error *err)
+{
+  if (!s->timing)
+    s->timing = stic_timing_create();
+  if (!s->timing)
+    return stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
+  stic_sim_time_stages(s->sim, true);
+  return STIC_OK;
+}
+
+static void write_row(stic_session *s)
+{
+  if (s->log)
+    stic_log_row(s->log, &s->result);
+  if (s->events) {
+    int count = 0;
+    const stic_event *events = stic_sim_events(s->sim, &count);
+
+    stic_events_rows(s->events, events, count);
+  }
+}
+
+int64_t stic_session_step(stic_session *s, const stic_sample *sample, int64_t read_ns)
+{
+  int64_t start, collide = 0, total = 0, write, frame;
+
+  s->rows++;
+  if (!s->timing) {
+    stic_sim_step(s->sim, sample, &s->result);
+    write_row(s);
+    return 0;
+  }
+  stic_sim_step(s->sim, sample, &s->result);
+  stic_sim_stage_times(s->sim, &collide, &total);
+  start = stic_clock_ns();
+  write_row(s);
+  write = stic_clock_ns() - start;
+  frame = read_ns + total + write;
+  stic_timing_add(s->timing, STIC_STAGE_READ, read_ns);
+  stic_timing_add(s->timing, STIC_STAGE_COLLIDE, collide);
+  stic_timing_add(s->timing, STIC_STAGE_SOLVE, total - collide);
+  stic_timing_add(s->timing, STIC_STAGE_WRITE, write);
+  stic_timing_add(s->timing, STIC_STAGE_FRAME, frame);
+  return frame;
+}
+
+bool stic_session_write_failed(const stic_session *s)
+{
+  return (s->log && stic_outfile_error(s->log) != 0) ||
+         (s->events && stic_outfile_error(s->events) != 0);
+}
+
+static stic_status commit(stic_outfile **out, bool *pipe_closed, stic_error *err)
+{
+  stic_outfile *o = *out;
+
+  *out = NULL;
+  if (!o)
+    return STIC_OK;
+  stic_outfile_flush(o);
+  *pipe_closed = stic_outfile_error(o) == EPIPE;
+  return stic_outfile_commit(o, err);
+}
+
+stic_status stic_session_commit(stic_session *s, const char *scheduling, bool *pipe_closed,
+                                stic_error *err)
+{
+  const double seconds = (double)(stic_clock_ns() - s->started_ns) / 1e9;
+  stic_status status = STIC_OK;
+
+  *pipe_closed = false;
+  /* All data first, so that a full disk is found before anything is in place. */
+  if (s->log)
+    stic_outfile_flush(s->log);
+  if (s->events && stic_outfile_flush(s->events) != 0)
+    status = commit(&s->events, pipe_closed, err);
+  if (status == STIC_OK)
+    status = commit(&s->log, pipe_closed, err);
+  if (status == STIC_OK)
+    status = commit(&s->events, pipe_closed, err);
+  if (status == STIC_OK && s->timing_path)
+    status = stic_timing_write(s->timing, seconds, scheduling, s->timing_path, err);
+  return status;
+}
+
+void stic_session_close(stic_session *s)
+{
+  stic_outfile_abort(s->log);
+  stic_outfile_abort(s->events);
+  stic_sim_destroy(s->sim);
+  free(s->timing);
+  free(s->overrides);
+  memset(s, 0, sizeof *s);
+}
