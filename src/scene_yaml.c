@@ -17,6 +17,8 @@
 
 #define FILE_MAX_BYTES (1 << 20)
 #define FORMAT_VERSION 1
+/* A scene needs six levels; libyaml's time grows with the square of the depth. */
+#define NESTING_MAX 32
 #define SURFACE_KEYS (STIC_KEY_COUNT - STIC_KEY_SURFACE)
 #define PI 3.14159265358979323846
 
@@ -397,6 +399,9 @@ static void read_mapping(reading *r, stic_key key, int surface, const yaml_node_
     } else {
       seen[child] = line_of(name);
       read_value(r, child, surface, value);
+      /* A mapping in block style begins in its first key's line; its own name says more. */
+      if (value->type == YAML_MAPPING_NODE && !r->override)
+        origin_of(r, child, surface)->line = line_of(name);
     }
   }
   report_missing(r, key, surface, node, seen);
@@ -495,6 +500,24 @@ static void syntax_error(reading *r, const yaml_parser_t *parser, const char *te
   }
 }
 
+/* How a token changes the depth of nesting. */
+static int nesting_step(yaml_token_type_t type)
+{
+  switch (type) {
+  case YAML_FLOW_SEQUENCE_START_TOKEN:
+  case YAML_FLOW_MAPPING_START_TOKEN:
+  case YAML_BLOCK_SEQUENCE_START_TOKEN:
+  case YAML_BLOCK_MAPPING_START_TOKEN:
+    return 1;
+  case YAML_FLOW_SEQUENCE_END_TOKEN:
+  case YAML_FLOW_MAPPING_END_TOKEN:
+  case YAML_BLOCK_END_TOKEN:
+    return -1;
+  default:
+    return 0;
+  }
+}
+
 /* Anchors, aliases and tags leave no mark in a loaded document, so they are looked for in the
  * tokens. Syntax errors are left to the loader. */
 static bool has_only_plain_features(reading *r, const char *text, size_t length)
@@ -502,6 +525,7 @@ static bool has_only_plain_features(reading *r, const char *text, size_t length)
   yaml_parser_t parser;
   yaml_token_t token;
   bool good = true, more = true;
+  int depth = 0;
 
   if (!yaml_parser_initialize(&parser)) {
     tell(r, false, STIC_NO_MEMORY, 0, "out of memory");
@@ -512,8 +536,11 @@ static bool has_only_plain_features(reading *r, const char *text, size_t length)
     const int64_t line = (int64_t)token.start_mark.line + 1;
 
     more = token.type != YAML_STREAM_END_TOKEN && token.type != YAML_NO_TOKEN;
+    depth += nesting_step(token.type);
     good = false;
-    if (token.type == YAML_ALIAS_TOKEN)
+    if (depth > NESTING_MAX)
+      BAD(r, line, "lists and mappings are nested deeper than %d; expected a scene", NESTING_MAX);
+    else if (token.type == YAML_ALIAS_TOKEN)
       BAD(r, line, "found an alias (*%.40s); expected the value itself", token.data.alias.value);
     else if (token.type == YAML_ANCHOR_TOKEN)
       BAD(r, line, "found an anchor (&%.40s); expected a plain value", token.data.anchor.value);

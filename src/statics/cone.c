@@ -121,23 +121,36 @@ static real agreement(const line_constraints *q, const int pair_of[2]) {
 
 /* ---- any number of contacts ---- */
 
-/* Generators of the contacts' cones as wrenches about a point, in units of force (moment over size). */
+/* What the contacts' wrenches are about their first place, in units of force (moment over size). They stay
+ * as long as the contacts do, and so do the pieces that only depend on them. */
+static balance *current_balance(core *c) {
+  balance *q = &c->balance;
+  if (q->known) return q;
+  q->known = true;
+  q->bounds_known = q->wedge_known = false;
+  q->count = c->contact_count;
+  for (int i = 0; i < q->count; i++) {
+    const surface *s = &c->body.surfaces[c->contacts[i].surface];
+    vec arm = v_sub(c->contacts[i].place, c->contacts[0].place);
+    q->mu[i] = s->mu_s;
+    q->edge_length[i] = r_sqrt(1 + s->mu_s * s->mu_s);
+    q->wrench_n[i][0] = s->n.x, q->wrench_n[i][1] = s->n.y, q->wrench_n[i][2] = v_cross(arm, s->n) / c->body.size;
+    q->wrench_t[i][0] = s->t.x, q->wrench_t[i][1] = s->t.y, q->wrench_t[i][2] = v_cross(arm, s->t) / c->body.size;
+  }
+  return q;
+}
+
+/* The two edges of each contact's cone as wrenches of unit force. */
 typedef struct generators {
   int count;
   real column[CONES_MAX][3];
 } generators;
 
-static void cone_generators(const core *c, vec about, generators *g) {
-  g->count = 0;
-  for (int i = 0; i < c->contact_count; i++) {
-    const surface *s = &c->body.surfaces[c->contacts[i].surface];
-    vec arm = v_sub(c->contacts[i].place, about);
-    for (int side = 0; side < 2; side++) {
-      vec r = cone_ray(s, side);
-      r = v_scale(r, 1 / v_length(r));
-      real *column = g->column[g->count++];
-      column[0] = r.x, column[1] = r.y, column[2] = v_cross(arm, r) / c->body.size;
-    }
+static void cone_generators(const balance *q, generators *g) {
+  g->count = 2 * q->count;
+  for (int i = 0; i < g->count; i++) {
+    real mu = i & 1 ? q->mu[i / 2] : -q->mu[i / 2], scale = 1 / q->edge_length[i / 2];
+    for (int k = 0; k < 3; k++) g->column[i][k] = (q->wrench_n[i / 2][k] + mu * q->wrench_t[i / 2][k]) * scale;
   }
 }
 
@@ -223,22 +236,132 @@ static real nearest_in_cone(const generators *g, const real target[3], real *wei
   return r_sqrt(dot3(away, away));
 }
 
-static void needed_wrench(const core *c, vec about, real target[3]) {
-  wrench load = load_about(c, about);
+static void needed_wrench(const core *c, real target[3]) {
+  wrench load = load_about(c, c->contacts[0].place);
   target[0] = -load.f.x, target[1] = -load.f.y, target[2] = -load.m / c->body.size;
 }
 
-static bool cones_balance(const core *c) {
-  generators g;
+/* Direction of freedom of a bound force: wrench columns per contact, 0 to 2 of them. */
+static int free_columns(const balance *q, int i, real columns[2][3], real basis[2][2]) {
+  if (q->bound[i] == BOUND_ZERO) return 0;
+  if (q->bound[i] != BOUND_NONE) {
+    basis[0][0] = 1 / q->edge_length[i], basis[0][1] = q->bound[i] * q->mu[i] / q->edge_length[i];
+    for (int k = 0; k < 3; k++)
+      columns[0][k] = basis[0][0] * q->wrench_n[i][k] + basis[0][1] * q->wrench_t[i][k];
+    return 1;
+  }
+  for (int k = 0; k < 3; k++) columns[0][k] = q->wrench_n[i][k], columns[1][k] = q->wrench_t[i][k];
+  basis[0][0] = 1, basis[0][1] = 0, basis[1][0] = 0, basis[1][1] = 1;
+  return 2;
+}
+
+/* Inverse of the Gram matrix A B B^T A^T of the forces that the bounds leave free. It may be singular (few
+ * columns); a rounding-sized ridge keeps it solvable without moving the answer. */
+static bool invert_gram(balance *q) {
+  real gram[3][3] = {{0}}, columns[2][3], basis[2][2], trace = 0;
+  for (int i = 0; i < q->count; i++) {
+    int free = free_columns(q, i, columns, basis);
+    for (int k = 0; k < free; k++)
+      for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++) gram[a][b] += columns[k][a] * columns[k][b];
+  }
+  for (int a = 0; a < 3; a++) trace += gram[a][a];
+  if (trace == 0) return false;
+  for (int a = 0; a < 3; a++) {
+    real m[6][7] = {{0}};
+    for (int i = 0; i < 3; i++)
+      for (int k = 0; k < 3; k++) m[i][k] = gram[i][k] / trace + (i == k ? 256 * REAL_EPSILON : 0);
+    m[a][3] = 1 / trace;
+    if (!solve_small(3, m)) return false;
+    for (int i = 0; i < 3; i++) q->inverse[i][a] = m[i][3];
+  }
+  return true;
+}
+
+/* Least norm under the bounds: f = B B^T A^T y with A f = target, and one step of refinement. Returns what is
+ * left of the target, relative to its largest term. */
+static real bounded_least_norm(const balance *q, const real target[3], real *n, real *t, real y[3]) {
+  real columns[2][3], basis[2][2], left[3] = {target[0], target[1], target[2]};
+  real scale = r_sqrt(dot3(target, target));
+  for (int i = 0; i < q->count; i++) n[i] = t[i] = 0;
+  y[0] = y[1] = y[2] = 0;
+  for (int pass = 0; pass < 2; pass++) {
+    real dy[3];
+    for (int a = 0; a < 3; a++) dy[a] = dot3(q->inverse[a], left);
+    for (int a = 0; a < 3; a++) y[a] += dy[a];
+    for (int i = 0; i < q->count; i++) {
+      int free = free_columns(q, i, columns, basis);
+      for (int k = 0; k < free; k++) {
+        real along = dot3(columns[k], dy);
+        n[i] += along * basis[k][0];
+        t[i] += along * basis[k][1];
+        for (int a = 0; a < 3; a++) left[a] -= along * columns[k][a];
+      }
+    }
+    if (dot3(left, left) <= 64 * REAL_EPSILON * REAL_EPSILON * scale * scale) break;
+  }
+  return r_sqrt(dot3(left, left));
+}
+
+/* How far contact i's force is inside the side k of its cone. */
+static real inside_side(const balance *q, int i, int k, real n, real t) {
+  return q->mu[i] == 0 ? n : q->mu[i] * n - k * t;
+}
+
+static bool all_inside(const balance *q, const real *n, const real *t) {
+  for (int i = 0; i < q->count; i++)
+    for (int k = -1; k <= 1; k += 2)
+      if (q->bound[i] != BOUND_ZERO && q->bound[i] != k && inside_side(q, i, k, n[i], t[i]) < 0) return false;
+  for (int i = 0; i < q->count; i++)
+    if (n[i] < 0) return false;
+  return true;
+}
+
+/* The bound whose force would rather go inside its cone most, or -1 if the norm is least. */
+static int worst_bound(const balance *q, const real *n, const real *t, const real y[3], const real target[3], int *to) {
+  int worst = -1;
+  real best = 64 * REAL_EPSILON * r_sqrt(dot3(target, target));
+  for (int i = 0; i < q->count; i++) {
+    if (q->bound[i] == BOUND_NONE) continue;
+    real pull_n = dot3(q->wrench_n[i], y) - n[i], pull_t = dot3(q->wrench_t[i], y) - t[i];
+    real length = q->edge_length[i];
+    if (q->bound[i] == BOUND_ZERO) {
+      for (int k = -1; k <= 1; k += 2) {
+        real gain = (pull_n + k * q->mu[i] * pull_t) / length;
+        if (gain > best) best = gain, worst = i, *to = k;
+      }
+    } else if (q->mu[i] > 0) {
+      real gain = (q->mu[i] * pull_n - q->bound[i] * pull_t) / length;
+      if (gain > best) best = gain, worst = i, *to = BOUND_NONE;
+    }
+  }
+  return worst;
+}
+
+/* Most often the bounds of the forces shown last give forces for this load too. */
+static bool last_bounds_do(const core *c, balance *q, const real target[3]) {
+  if (!q->bounds_known) return false;
+  bool same = q->last_target[0] == target[0] && q->last_target[1] == target[1] && q->last_target[2] == target[2];
+  if (!same) {
+    for (int k = 0; k < 3; k++) q->last_target[k] = target[k];
+    q->last_do = bounded_least_norm(q, target, q->last_n, q->last_t, q->last_y) <= TOLERANCE * c->body.size / 4 &&
+                 all_inside(q, q->last_n, q->last_t);
+  }
+  return q->last_do;
+}
+
+static bool cones_balance(core *c) {
+  balance *q = current_balance(c);
   real target[3], weights[CONES_MAX], away[3];
-  vec about = c->contacts[0].place;
-  cone_generators(c, about, &g);
-  needed_wrench(c, about, target);
+  needed_wrench(c, target);
+  if (last_bounds_do(c, q, target)) return true;
+  generators g;
+  cone_generators(q, &g);
   return nearest_in_cone(&g, target, weights, away) <= TOLERANCE * c->body.size;
 }
 
 /* JUDGE: forces exist that balance with N >= 0 and |T| <= mu_s N. */
-static bool loads_balance(const core *c) {
+static bool loads_balance(core *c) {
   real slack = TOLERANCE * c->body.size;
   if (c->contact_count == 0) return true;
   if (all_at_one_vertex(c)) { /* its moment is zero: HOLD or a slide has seen to that */
@@ -281,133 +404,71 @@ static void least_norm_of_two(const core *c, vec *forces) {
   forces[1] = v_mix(l.second, x, l.d);
 }
 
-/* The least-norm member of the polyhedral set { f_i in cone i, sum of wrenches = target }: a primal active
- * set method on the generators' weights, from the basic solution of nearest_in_cone. Each force is kept
- * as (N, T); a bound is one side of its cone. */
-typedef struct norm_problem {
-  int count;                          /* contacts */
-  real wrench_n[CONTACTS_MAX][3], wrench_t[CONTACTS_MAX][3], mu[CONTACTS_MAX];
-  real n[CONTACTS_MAX], t[CONTACTS_MAX];
-  int bound[CONTACTS_MAX];            /* 0 free, +1 T = mu N, -1 T = -mu N, 2 N = T = 0 */
-} norm_problem;
-
-/* Direction of freedom of a bound force: wrench columns per contact, 0 to 2 of them. */
-static int free_columns(const norm_problem *q, int i, real columns[2][3], real basis[2][2]) {
-  if (q->bound[i] == 2) return 0;
-  if (q->bound[i] != 0) {
-    real length = r_sqrt(1 + q->mu[i] * q->mu[i]);
-    basis[0][0] = 1 / length, basis[0][1] = q->bound[i] * q->mu[i] / length;
-    for (int k = 0; k < 3; k++)
-      columns[0][k] = basis[0][0] * q->wrench_n[i][k] + basis[0][1] * q->wrench_t[i][k];
-    return 1;
-  }
-  for (int k = 0; k < 3; k++) columns[0][k] = q->wrench_n[i][k], columns[1][k] = q->wrench_t[i][k];
-  basis[0][0] = 1, basis[0][1] = 0, basis[1][0] = 0, basis[1][1] = 1;
-  return 2;
-}
-
-/* Least norm with the bounds as equalities: f = B B^T A^T y, sum A B B^T A^T y = target. The Gram matrix may
- * be singular (few columns); a rounding-sized ridge keeps it solvable without moving the answer. */
-static bool bounded_least_norm(const norm_problem *q, const real target[3], real *n, real *t, real y[3]) {
-  real m[6][7] = {{0}};
-  real columns[2][3], basis[2][2], trace = 0;
-  for (int i = 0; i < q->count; i++) {
-    int free = free_columns(q, i, columns, basis);
-    for (int k = 0; k < free; k++)
-      for (int a = 0; a < 3; a++)
-        for (int b = 0; b < 3; b++) m[a][b] += columns[k][a] * columns[k][b];
-  }
-  for (int a = 0; a < 3; a++) trace += m[a][a], m[a][3] = target[a];
-  if (trace == 0) return false;
-  for (int a = 0; a < 3; a++) m[a][a] += 256 * REAL_EPSILON * trace;
-  if (!solve_small(3, m)) return false;
-  for (int a = 0; a < 3; a++) y[a] = m[a][3];
-  for (int i = 0; i < q->count; i++) {
-    int free = free_columns(q, i, columns, basis);
-    n[i] = t[i] = 0;
-    for (int k = 0; k < free; k++) {
-      real along = dot3(columns[k], y);
-      n[i] += along * basis[k][0];
-      t[i] += along * basis[k][1];
-    }
-  }
-  return true;
-}
-
-static void least_norm_of_many(const core *c, vec *forces) {
+/* A basic solution inside the cones, and the bounds that it has active. */
+static void start_inside(balance *q, real target[3], real *n, real *t) {
   generators g;
-  norm_problem q;
-  real target[3], away[3], weights[CONES_MAX], n[CONTACTS_MAX], t[CONTACTS_MAX], y[3];
-  vec about = c->contacts[0].place;
-  cone_generators(c, about, &g);
-  needed_wrench(c, about, target);
+  real away[3], weights[CONES_MAX];
+  cone_generators(q, &g);
   nearest_in_cone(&g, target, weights, away);
   for (int k = 0; k < 3; k++) target[k] -= away[k]; /* what the cones can give: within tolerance all of it */
-  q.count = c->contact_count;
-  for (int i = 0; i < q.count; i++) {
-    const surface *s = &c->body.surfaces[c->contacts[i].surface];
-    vec arm = v_sub(c->contacts[i].place, about);
-    q.mu[i] = s->mu_s;
-    q.wrench_n[i][0] = s->n.x, q.wrench_n[i][1] = s->n.y, q.wrench_n[i][2] = v_cross(arm, s->n) / c->body.size;
-    q.wrench_t[i][0] = s->t.x, q.wrench_t[i][1] = s->t.y, q.wrench_t[i][2] = v_cross(arm, s->t) / c->body.size;
-    real scale = 1 / r_sqrt(1 + q.mu[i] * q.mu[i]), low = weights[2 * i], high = weights[2 * i + 1];
-    q.n[i] = (low + high) * scale;
-    q.t[i] = (high - low) * q.mu[i] * scale;
-    q.bound[i] = low > 0 && high > 0 ? 0 : high > 0 ? 1 : low > 0 ? -1 : 2;
-    if (q.mu[i] == 0 && q.bound[i] == 0) q.bound[i] = 1;
+  for (int i = 0; i < q->count; i++) {
+    real scale = 1 / q->edge_length[i], low = weights[2 * i], high = weights[2 * i + 1];
+    n[i] = (low + high) * scale;
+    t[i] = (high - low) * q->mu[i] * scale;
+    q->bound[i] = low > 0 && high > 0 ? BOUND_NONE : high > 0 ? BOUND_HIGH : low > 0 ? BOUND_LOW : BOUND_ZERO;
+    if (q->mu[i] == 0 && q->bound[i] == BOUND_NONE) q->bound[i] = BOUND_HIGH;
   }
-  for (int step = 0; step < NORM_STEPS_MAX; step++) {
-    bool solved = bounded_least_norm(&q, target, n, t, y);
+}
+
+/* The least-norm member of the set { f_i in cone i, sum of wrenches = target }: a primal active set method.
+ * Every iterate is inside the cones, so whatever ends it leaves an admissible answer. */
+static void least_norm_of_many(core *c, vec *forces) {
+  balance *q = current_balance(c);
+  real target[3], n[CONTACTS_MAX], t[CONTACTS_MAX], y[3], *now_n = q->last_n, *now_t = q->last_t;
+  int to = BOUND_NONE;
+  needed_wrench(c, target);
+  bool done = last_bounds_do(c, q, target) && worst_bound(q, now_n, now_t, q->last_y, target, &to) < 0;
+  if (!done) {
+    q->bounds_known = false;
+    start_inside(q, target, now_n, now_t);
+  }
+  for (int step = 0; step < NORM_STEPS_MAX && !done; step++) {
+    if (!invert_gram(q)) break;
+    bounded_least_norm(q, target, n, t, y);
     real part = 1;
     int hit = -1, side = 0;
-    for (int i = 0; solved && i < q.count; i++) {
-      /* Largest step for which mu N -+ T >= 0 stays. */
+    for (int i = 0; i < q->count; i++)
       for (int k = -1; k <= 1; k += 2) {
-        if (q.bound[i] == 2 || (q.bound[i] == k)) continue;
-        real now = q.mu[i] * q.n[i] - k * q.t[i], then = q.mu[i] * n[i] - k * t[i];
-        if (q.mu[i] == 0) now = q.n[i], then = n[i];
+        if (q->bound[i] == BOUND_ZERO || q->bound[i] == k) continue;
+        real now = inside_side(q, i, k, now_n[i], now_t[i]), then = inside_side(q, i, k, n[i], t[i]);
         if (then >= 0 || now - then <= 0) continue;
         real reach = r_max(0, now) / (now - then);
         if (reach < part) part = reach, hit = i, side = k;
       }
+    for (int i = 0; i < q->count; i++) {
+      now_n[i] += part * (n[i] - now_n[i]);
+      now_t[i] += part * (t[i] - now_t[i]);
     }
-    for (int i = 0; solved && i < q.count; i++) {
-      q.n[i] += part * (n[i] - q.n[i]);
-      q.t[i] += part * (t[i] - q.t[i]);
-    }
-    if (solved && hit >= 0) {
-      q.bound[hit] = q.bound[hit] == 0 && q.mu[hit] > 0 ? side : 2;
+    if (hit >= 0) {
+      q->bound[hit] = q->bound[hit] == BOUND_NONE && q->mu[hit] > 0 ? side : BOUND_ZERO;
       continue;
     }
-    if (!solved) break;
-    /* Optimal under these bounds: release the one whose force would rather go inside. */
-    int release = -1;
-    real best = 64 * REAL_EPSILON * r_sqrt(dot3(target, target));
-    int release_to = 0;
-    for (int i = 0; i < q.count; i++) {
-      if (q.bound[i] == 0) continue;
-      real pull_n = dot3(q.wrench_n[i], y) - q.n[i], pull_t = dot3(q.wrench_t[i], y) - q.t[i];
-      if (q.bound[i] == 2) {
-        for (int k = -1; k <= 1; k += 2) {
-          real gain = (pull_n + k * q.mu[i] * pull_t) / r_sqrt(1 + q.mu[i] * q.mu[i]);
-          if (gain > best) best = gain, release = i, release_to = k;
-        }
-      } else if (q.mu[i] > 0) {
-        real gain = (q.mu[i] * pull_n - q.bound[i] * pull_t) / r_sqrt(1 + q.mu[i] * q.mu[i]);
-        if (gain > best) best = gain, release = i, release_to = 0;
-      }
-    }
-    if (release < 0) break;
-    q.bound[release] = release_to;
+    int release = worst_bound(q, now_n, now_t, y, target, &to);
+    done = release < 0;
+    if (!done) q->bound[release] = to;
   }
-  for (int i = 0; i < q.count; i++) {
+  if (done && !q->bounds_known) {
+    q->bounds_known = true;
+    q->last_target[0] = NAN; /* solved for no load yet */
+  }
+  for (int i = 0; i < q->count; i++) {
     const surface *s = &c->body.surfaces[c->contacts[i].surface];
-    forces[i] = v_add(v_scale(s->n, q.n[i]), v_scale(s->t, q.t[i]));
+    forces[i] = v_add(v_scale(s->n, now_n[i]), v_scale(s->t, now_t[i]));
   }
 }
 
 /* Contact forces in the order of the contacts, over k_p. */
-static void least_norm_forces(const core *c, vec *forces) {
+static void least_norm_forces(core *c, vec *forces) {
   if (c->contact_count == 1) forces[0] = v_neg(spring_force(c));
   else if (c->contact_count == 2 && !all_at_one_vertex(c)) least_norm_of_two(c, forces);
   else if (c->contact_count > 0) least_norm_of_many(c, forces);
@@ -417,11 +478,7 @@ static void least_norm_forces(const core *c, vec *forces) {
 
 /* The contacts hold whatever the hand does: their cones span every wrench. For two contacts this is when
  * the line that joins them runs inside both cones. */
-static bool is_wedged(const core *c) {
-  if (c->contact_count < 2 || all_at_one_vertex(c)) return false;
-  generators g;
-  real weights[CONES_MAX], away[3];
-  cone_generators(c, c->contacts[0].place, &g);
+static bool cones_span_all(const core *c, const balance *q) {
   if (c->contact_count == 2) {
     vec d = v_sub(c->contacts[1].place, c->contacts[0].place);
     const surface *a = &c->body.surfaces[c->contacts[0].surface], *b = &c->body.surfaces[c->contacts[1].surface];
@@ -432,6 +489,9 @@ static bool is_wedged(const core *c) {
     }
     return false;
   }
+  generators g;
+  real weights[CONES_MAX], away[3];
+  cone_generators(q, &g);
   for (int axis = 0; axis < 3; axis++)
     for (int sense = -1; sense <= 1; sense += 2) {
       real target[3] = {0, 0, 0};
@@ -439,4 +499,12 @@ static bool is_wedged(const core *c) {
       if (nearest_in_cone(&g, target, weights, away) > TOLERANCE) return false;
     }
   return true;
+}
+
+static bool is_wedged(core *c) {
+  if (c->contact_count < 2 || all_at_one_vertex(c)) return false;
+  balance *q = current_balance(c);
+  if (!q->wedge_known) q->wedged = cones_span_all(c, q);
+  q->wedge_known = true;
+  return q->wedged;
 }

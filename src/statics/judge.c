@@ -5,7 +5,7 @@
 enum { CHOICES_MAX = 4096 };
 
 /* 5.1: "If they suffice the equation (5), the configuration is physically stable" - here for every set. */
-static bool is_stable(const core *c) { return loads_balance(c); }
+static bool is_stable(core *c) { return loads_balance(c); }
 
 /* 5.1: "the sign of the surface normal force; if it is negative, ... the non-contact state". */
 static bool single_contact_pulls(const core *c) {
@@ -82,7 +82,7 @@ static bool slides_on_rest(core *c, const choice *o) {
   /* A slide that was stopped on its way is at mu_d N but for rounding: nothing drives it. */
   real above = TOLERANCE * c->body.size;
   if (normal <= above || r_abs(tangential) <= s->mu_d * normal + above) return false;
-  real sigma = r_sign(tangential), shift = tangential - sigma * s->mu_d * normal;
+  real sigma = slip_sense(c, s), shift = tangential - sigma * s->mu_d * normal;
   vec arm = v_sub(holding_point(c), k->place);
   real moment = spring_moment_about(c, k->place) - shift * v_cross(arm, s->t);
   path f = path_sliding(c, k->vertex, k->place, s->t, s->n, sigma * s->mu_d, r_sign(moment));

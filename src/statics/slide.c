@@ -10,6 +10,7 @@ static void slide_to(core *c, contact *k, vec place) {
   vec on_surface = v_mix(place, -gap_of(c, place, k->surface), c->body.surfaces[k->surface].n);
   real length = v_length(v_sub(on_surface, k->place));
   k->place = on_surface;
+  c->balance.known = false;
   if (length <= R(1e-12) * c->body.size) return;
   c->longest_slide = r_max(c->longest_slide, length);
   c->happened = true;
@@ -26,13 +27,17 @@ static void finish_slide(core *c, touch t) {
   add_touching(c);
 }
 
+/* 5.1: "a friction force directed opposing to the direction of hand's tangential force": the sense in which
+ * a contact slips. Of the four end points that the paper counts this leaves the one with less energy. */
+static real slip_sense(const core *c, const surface *s) { return r_sign(v_dot(spring_force(c), s->t)); }
+
 /* ---- one vertex [5.1] ---- */
 
 static void slide_vertex(core *c, int index) {
   contact *k = &c->contacts[index];
   const surface *s = &c->body.surfaces[k->surface];
   vec force = spring_force(c);
-  real sigma = r_sign(v_dot(force, s->t)), friction = sigma * s->mu_d;
+  real sigma = slip_sense(c, s), friction = sigma * s->mu_d;
   /* First along the surface at the present angle. */
   vec travel = v_scale(s->t, v_dot(force, s->t) + friction * v_dot(force, s->n));
   touch t = first_touch_moving(c, travel, 0);
@@ -95,7 +100,7 @@ static bool normals_along_walls(const core *c, int first, int second, real sense
 static bool edge_or_slot_starts(const core *c, int first, int second, real *sense, vec *velocity) {
   const surface *a = &c->body.surfaces[c->contacts[first].surface];
   pair_normals p;
-  *sense = r_sign(v_dot(spring_force(c), a->t));
+  *sense = slip_sense(c, a);
   *velocity = v_scale(a->t, *sense);
   real above = TOLERANCE * c->body.size;
   return normals_along_walls(c, first, second, *sense, &p) && p.first > above && p.second > above && p.drive > above;

@@ -147,6 +147,7 @@ static void advance_contact(core *c, contact *k, vec place, real *slid) {
   vec on_surface = v_mix(place, -gap_of(c, place, k->surface), c->body.surfaces[k->surface].n);
   *slid += v_length(v_sub(on_surface, k->place));
   k->place = on_surface;
+  c->balance.known = false;
 }
 
 /* ---- one vertex ---- */

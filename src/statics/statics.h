@@ -66,6 +66,22 @@ typedef struct near_list {
   uint64_t vertices[STIC_SURFACES_MAX];  /* mask per listed surface */
 } near_list;
 
+/* Contact forces as an optimisation over the cones (cone.c); kept while the contacts stay. */
+enum { BOUND_LOW = -1, BOUND_NONE = 0, BOUND_HIGH = 1, BOUND_ZERO = 2 }; /* T = -mu N, inside, T = mu N, N = T = 0 */
+
+typedef struct balance {
+  bool known;              /* the wrenches below are those of the contacts */
+  int count;
+  real wrench_n[CONTACTS_MAX][3], wrench_t[CONTACTS_MAX][3], mu[CONTACTS_MAX];
+  real edge_length[CONTACTS_MAX]; /* sqrt(1 + mu^2) */
+  bool bounds_known;       /* bounds and inverse are those of the last least-norm forces */
+  int bound[CONTACTS_MAX];
+  real inverse[3][3];
+  real last_target[3], last_n[CONTACTS_MAX], last_t[CONTACTS_MAX], last_y[3];
+  bool last_do;            /* the bounds give forces inside the cones for last_target */
+  bool wedge_known, wedged;
+} balance;
+
 typedef struct core {
   body body;
   stic_settings settings;
@@ -84,6 +100,7 @@ typedef struct core {
   int contact_count;
   pair opened[PAIRS_MAX];  /* opened and not left yet: no new touch until they have */
   int opened_count;
+  balance balance;
   bool window_open;        /* the last judgement was an event: the next comes h_min further */
   bool sliding;            /* mu_s = mu_d: the contacts slide on without events, and ... */
   real sliding_sense;      /* ... in this sense: along t for one contact or an edge, of theta for a trammel */
@@ -180,10 +197,10 @@ typedef struct wrench {
 
 static wrench load_about(const core *c, vec point);
 static int vertex_cone_planes(const core *c, vec planes[3]); /* all contacts at one vertex */
-static bool loads_balance(const core *c);                    /* JUDGE's question */
+static bool loads_balance(core *c);                          /* JUDGE's question */
 static bool all_at_one_vertex(const core *c);
-static void least_norm_forces(const core *c, vec *forces);
-static bool is_wedged(const core *c);
+static void least_norm_forces(core *c, vec *forces);
+static bool is_wedged(core *c);
 
 /* ---- hold.c, slide.c, judge.c, flow.c, relax.c, slide_on.c ---- */
 static bool hold(core *c);

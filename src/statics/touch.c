@@ -35,6 +35,7 @@ static void add_contact(core *c, int vertex, int on) {
     if (c->contacts[i].vertex == vertex) place = c->contacts[i].place;
   contact k = {vertex, on, place};
   c->contacts[c->contact_count++] = k;
+  c->balance.known = false;
   c->happened = true;
   record(c, STIC_EVENT_TOUCH, vertex, on, place, 0);
 }
@@ -43,6 +44,7 @@ static void remove_contact(core *c, int index) {
   contact k = c->contacts[index];
   for (int i = index; i + 1 < c->contact_count; i++) c->contacts[i] = c->contacts[i + 1];
   c->contact_count--;
+  c->balance.known = false;
   if (!is_opened(c, k.vertex, k.surface) && c->opened_count < PAIRS_MAX) {
     pair o = {k.vertex, k.surface};
     c->opened[c->opened_count++] = o;

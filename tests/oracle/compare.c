@@ -61,6 +61,7 @@ int main(int argc, char **argv) {
       if (rep.flow_stages > flow0) { flow++; }
       noanswer += (res.flags & STIC_FLAG_NO_ANSWER) != 0;
       limits += (res.flags & STIC_FLAG_LIMIT) != 0;
+      if ((res.flags & STIC_FLAG_LIMIT) && verbose) printf("limit: seed %lu frame %d oracle limit %d stages\n", seed, i, rep.limit);
       if (e > (event ? 1e-7 : 1e-9) || state.nc != res.contact_count) {
         bad_cases++;
         if (verbose) {

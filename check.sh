@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds with both compilers and with sanitizers, and runs all tests.
+#   ./check.sh            everything
+#   ./check.sh --quick    one build, without the slow labels
+set -euo pipefail
+cd "$(dirname "$0")"
+. .ci/packages.sh
+
+need build run video devices test
+
+configure_and_build() { # preset
+  cmake --preset "$1" >"build-$1.log" 2>&1 || { cat "build-$1.log"; return 1; }
+  if grep -q 'not used by the project' "build-$1.log"; then cat "build-$1.log"; return 1; fi
+  grep '^-- stiction ' "build-$1.log"
+  cmake --build --preset "$1" >>"build-$1.log" 2>&1 || { tail -n 60 "build-$1.log"; return 1; }
+}
+
+if [ "${1:-}" = --quick ]; then
+  configure_and_build ci
+  exec ctest --preset ci -LE 'slow|kernel|fuzz' -j "$(nproc)"
+fi
+
+configure_and_build ci-clang
+configure_and_build asan
+ctest --preset asan -L 'unit|invariants|files|cli|driver' -LE 'slow' -j "$(nproc)"
+configure_and_build ci
+ctest --preset ci -j "$(nproc)"
