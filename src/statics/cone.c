@@ -70,7 +70,8 @@ static force_line two_contact_forces(const core *c, wrench load_about_first, int
   return l;
 }
 
-/* The six constraints value + slope x >= 0 on the line: mu N -+ T >= -slack and N >= -slack for both. */
+/* The six constraints value + slope x >= 0 on the line: mu N -+ T >= -slack/2 and N >= -slack/2 for both, as
+ * the two share what the balance may be off. */
 typedef struct line_constraints {
   real value[6], slope[6];
 } line_constraints;
@@ -83,7 +84,7 @@ static line_constraints constraints_of(const force_line *l, real slack) {
     vec planes[3] = {v_mix(v_neg(s->t), s->mu_s, s->n), v_mix(s->t, s->mu_s, s->n), s->n};
     for (int k = 0; k < 3; k++) {
       real slope = v_dot(planes[k], along);
-      q.value[3 * side + k] = v_dot(planes[k], at) + slack;
+      q.value[3 * side + k] = v_dot(planes[k], at) + slack / 2;
       q.slope[3 * side + k] = r_abs(slope) <= 4 * REAL_EPSILON * (1 + s->mu_s) ? 0 : slope;
     }
   }

@@ -112,16 +112,16 @@ static void slide_edge_or_slot(core *c, int first, int second, real sense) {
   contact *i = &c->contacts[first], *k = &c->contacts[second];
   pair_normals p;
   if (!normals_along_walls(c, first, second, sense, &p)) return;
-  real balance = falls_to_zero(p.drive, p.drive_rate);
+  real rest = falls_to_zero(p.drive, p.drive_rate);
   real lift = r_min(falls_to_zero(p.first, p.first_rate), falls_to_zero(p.second, p.second_rate));
-  real length = r_min(balance, lift);
+  real length = r_min(rest, lift);
   vec travel = v_scale(c->body.surfaces[i->surface].t, sense * length);
   touch t = first_touch_moving(c, travel, 0);
   if (t.at < R_HUGE) travel = v_scale(travel, t.at);
   c->p = v_add(c->p, travel);
   slide_to(c, i, v_add(i->place, travel));
   slide_to(c, k, v_add(k->place, travel));
-  slide_ended(c, balance <= lift && t.at == R_HUGE, sense);
+  slide_ended(c, rest <= lift && t.at == R_HUGE, sense);
   finish_slide(c, t);
 }
 
