@@ -1,6 +1,9 @@
 /* The one list of drivers, and the calls that go through it. */
 #include "../src/error.h"
 #include "driver.h"
+#include "gamepad/gamepad_driver.h"
+#include "hydra/hydra_driver.h"
+#include "spacemouse/spacemouse_driver.h"
 #include "trace/trace_driver.h"
 
 #include <assert.h>
@@ -9,6 +12,9 @@
 
 /* In the order in which they are listed and asked to match. */
 static const stic_driver *const drivers[] = {
+  &stic_spacemouse_driver,
+  &stic_hydra_driver,
+  &stic_gamepad_driver,
   &stic_trace_driver,
 };
 

@@ -9,8 +9,8 @@
 #include <string.h>
 
 #define PI 3.14159265358979323846
-#define SIZE_MIN 1e-6 /* m */
-#define SIZE_MAX_M 1e4
+#define SIZE_MIN 1e-9 /* m */
+#define SIZE_MAX_M 1e9
 /* An object that begins this deep (relative to its size) is taken as touching. */
 #define START_DEPTH 1e-12
 /* A corner must stand out from the line through its neighbours by this part of the object's size. */

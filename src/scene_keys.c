@@ -4,9 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#define LENGTH_LOW 1e-6
-#define LENGTH_HIGH 1e4
-#define PLACE 1e6 /* m, largest coordinate */
+#define LENGTH_LOW 1e-9
+#define LENGTH_HIGH 1e9
+#define PLACE 1e15 /* m, largest coordinate */
 #define ANGLE 1e6 /* degrees */
 #define STIFF 1e12
 #define SCENE(field) offsetof(stic_scene, field)
@@ -32,16 +32,16 @@ static const stic_key_row rows[STIC_KEY_COUNT] = {
   [STIC_KEY_HOLDING_POINT] = {"holding_point", STIC_KEY_HAND, STIC_TYPE_NUMBERS, 2, SCENE(holding_point), -LENGTH_HIGH, LENGTH_HIGH, false, false, false, "m"},
   [STIC_KEY_REACH] = {"reach", STIC_KEY_HAND, STIC_TYPE_NUMBERS, 1, SCENE(reach), 0, LENGTH_HIGH, false, false, false, "m"},
   [STIC_KEY_FRICTION] = {"friction", STIC_KEY_ROOT, STIC_TYPE_MAPPING, 0, STIC_NO_OFFSET, 0, 0, false, false, false, ""},
-  [STIC_KEY_STATIC] = {"static", STIC_KEY_FRICTION, STIC_TYPE_NUMBERS, 1, STIC_NO_OFFSET, 0, 1e3, false, false, false, ""},
-  [STIC_KEY_DYNAMIC] = {"dynamic", STIC_KEY_FRICTION, STIC_TYPE_NUMBERS, 1, STIC_NO_OFFSET, 0, 1e3, false, false, false, ""},
+  [STIC_KEY_STATIC] = {"static", STIC_KEY_FRICTION, STIC_TYPE_NUMBERS, 1, STIC_NO_OFFSET, 0, 1e6, false, false, false, ""},
+  [STIC_KEY_DYNAMIC] = {"dynamic", STIC_KEY_FRICTION, STIC_TYPE_NUMBERS, 1, STIC_NO_OFFSET, 0, 1e6, false, false, false, ""},
   [STIC_KEY_SURFACES] = {"surfaces", STIC_KEY_ROOT, STIC_TYPE_SURFACES, 0, STIC_NO_OFFSET, 1, STIC_SURFACES_MAX, false, false, true, ""},
   [STIC_KEY_SURFACE] = {"*", STIC_KEY_SURFACES, STIC_TYPE_MAPPING, 0, STIC_NO_OFFSET, 0, 0, false, false, false, ""},
   [STIC_KEY_SURFACE_NAME] = {"name", STIC_KEY_SURFACE, STIC_TYPE_NAME, 0, SURFACE(name), 0, 0, false, false, false, ""},
   [STIC_KEY_SURFACE_POINT] = {"point", STIC_KEY_SURFACE, STIC_TYPE_NUMBERS, 2, SURFACE(point), -PLACE, PLACE, false, false, true, "m"},
   [STIC_KEY_SURFACE_NORMAL] = {"normal_deg", STIC_KEY_SURFACE, STIC_TYPE_NUMBERS, 1, SURFACE(normal_deg), -ANGLE, ANGLE, false, false, true, "degrees"},
   [STIC_KEY_SURFACE_FRICTION] = {"friction", STIC_KEY_SURFACE, STIC_TYPE_MAPPING, 0, STIC_NO_OFFSET, 0, 0, false, false, false, ""},
-  [STIC_KEY_SURFACE_STATIC] = {"static", STIC_KEY_SURFACE_FRICTION, STIC_TYPE_NUMBERS, 1, SURFACE(friction.mu_static), 0, 1e3, false, false, false, ""},
-  [STIC_KEY_SURFACE_DYNAMIC] = {"dynamic", STIC_KEY_SURFACE_FRICTION, STIC_TYPE_NUMBERS, 1, SURFACE(friction.mu_dynamic), 0, 1e3, false, false, false, ""},
+  [STIC_KEY_SURFACE_STATIC] = {"static", STIC_KEY_SURFACE_FRICTION, STIC_TYPE_NUMBERS, 1, SURFACE(friction.mu_static), 0, 1e6, false, false, false, ""},
+  [STIC_KEY_SURFACE_DYNAMIC] = {"dynamic", STIC_KEY_SURFACE_FRICTION, STIC_TYPE_NUMBERS, 1, SURFACE(friction.mu_dynamic), 0, 1e6, false, false, false, ""},
 };
 
 const stic_key_row *stic_key_get(stic_key key)

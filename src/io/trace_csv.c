@@ -17,7 +17,7 @@
 #define COLUMNS 9
 #define NORM_TOLERANCE 0.01
 /* Far beyond any tracker, and still exact to 1e-9 m. */
-#define POSITION_MAX 1e6
+#define POSITION_MAX 1e18
 
 static const char *const column_names[COLUMNS] = {"t",  "x",  "y",  "z",      "qx",
                                                   "qy", "qz", "qw", "buttons"};

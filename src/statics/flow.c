@@ -236,7 +236,7 @@ static flow_pose flow_along(flow *f, flow_pose q, touch *t) {
   const real tolerance = r_max(R(1e-13), 16 * REAL_EPSILON) * c->body.size;
   real h = R(0.01);
   t->at = R_HUGE;
-  for (int i = 0; i < FLOW_STEPS_MAX; i++) {
+  while (c->flow_steps++ < FLOW_STEPS_MAX) {
     flow_pose next;
     real error = flow_step(f, q, h, &next);
     c->report->iterations++;

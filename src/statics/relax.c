@@ -25,6 +25,7 @@ static void relax(core *c, hand target, double t) {
   c->sliding = false;
   c->slid_to_zero = false;
   c->longest_slide = 0;
+  c->flow_steps = 0;
   c->noise = gap_noise(c);
   c->report->relaxations++;
   int stage = 0;

@@ -113,6 +113,7 @@ typedef struct core {
   bool happened;           /* touch, opening, slip: an event */
   real longest_slide;
   real longest_slide_on;   /* slid without events since the last sample */
+  int flow_steps;          /* spent on the viscous flow: bounded per RELAX */
   bool slid_to_zero;       /* the last action was a slide that reached its balance */
   real slide_sense;        /* ... in this sense (see sliding_sense) */
   real noise;              /* rounding of a gap at these coordinates */

@@ -1,0 +1,529 @@
+#include "raw_recording.h"
+
+#include "../src/error.h"
+#include "../src/io/format.h"
+#include "../src/io/line_reader.h"
+#include "../src/number.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define FORMAT_VERSION 1
+#define US 1000 /* ns */
+
+struct stic_raw_reader {
+  stic_line_reader *lines;
+  bool kind_known;
+  bool begun;    /* a record has been given out */
+  stic_raw_kind kind;
+  int device;    /* that the lines are about */
+  int64_t last_ns;
+  uint8_t bytes[STIC_RAW_BYTES_MAX];
+  stic_raw_device devices[STIC_RAW_DEVICES_MAX];
+};
+
+stic_status stic_raw_open(const char *path, stic_raw_reader **reader, stic_error *err)
+{
+  stic_raw_reader *r = calloc(1, sizeof *r);
+  stic_status status;
+
+  *reader = NULL;
+  if (!r)
+    return stic_error_set(err, STIC_NO_MEMORY, path, 0, "out of memory");
+  status = stic_line_reader_open(path, &r->lines, err);
+  if (status != STIC_OK)
+    free(r);
+  else
+    *reader = r;
+  return status;
+}
+
+void stic_raw_close(stic_raw_reader *reader)
+{
+  if (!reader)
+    return;
+  stic_line_reader_close(reader->lines);
+  free(reader);
+}
+
+stic_raw_kind stic_raw_reader_kind(const stic_raw_reader *reader)
+{
+  return reader->kind;
+}
+
+const stic_raw_device *stic_raw_reader_device(const stic_raw_reader *reader, int device)
+{
+  assert(device >= 0 && device < STIC_RAW_DEVICES_MAX);
+  return &reader->devices[device];
+}
+
+/* ---- words of a line --------------------------------------------------------------------- */
+
+typedef struct words {
+  const char *at, *end;
+} words;
+
+static bool next_word(words *w, const char **text, size_t *length)
+{
+  while (w->at < w->end && (*w->at == ' ' || *w->at == '\t'))
+    w->at++;
+  *text = w->at;
+  while (w->at < w->end && *w->at != ' ' && *w->at != '\t')
+    w->at++;
+  *length = (size_t)(w->at - *text);
+  return *length > 0;
+}
+
+static int hex_digit(char c)
+{
+  if (c >= '0' && c <= '9')
+    return c - '0';
+  if (c >= 'a' && c <= 'f')
+    return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F')
+    return c - 'A' + 10;
+  return -1;
+}
+
+/* Up to four hexadecimal digits. */
+static bool parse_hex(const char *text, size_t length, int *value)
+{
+  *value = 0;
+  if (length < 1 || length > 4)
+    return false;
+  for (size_t i = 0; i < length; i++) {
+    const int digit = hex_digit(text[i]);
+
+    if (digit < 0)
+      return false;
+    *value = *value * 16 + digit;
+  }
+  return true;
+}
+
+static stic_raw_status bad(const stic_raw_reader *r, stic_error *err, const char *format, ...) STIC_PRINTF(3, 4);
+
+static stic_raw_status bad(const stic_raw_reader *r, stic_error *err, const char *format, ...)
+{
+  char message[400];
+  va_list args;
+
+  va_start(args, format);
+  vsnprintf(message, sizeof message, format, args);
+  va_end(args);
+  stic_error_set(err, STIC_BAD_INPUT, stic_line_reader_name(r->lines), stic_line_reader_number(r->lines), "%s",
+                 message);
+  return STIC_RAW_BAD;
+}
+
+/* The bytes in the rest of a line; false and `*err` if there is anything else. */
+static bool parse_bytes(const stic_raw_reader *r, words *w, uint8_t *bytes, size_t room, size_t *count,
+                        stic_error *err)
+{
+  const char *text;
+  size_t length;
+  char shown[24];
+  int value;
+
+  *count = 0;
+  while (next_word(w, &text, &length)) {
+    if (length != 2 || !parse_hex(text, length, &value)) {
+      bad(r, err, "found '%s'; expected bytes of two hexadecimal digits",
+          stic_error_quote(text, length, shown, sizeof shown));
+      return false;
+    }
+    if (*count == room) {
+      bad(r, err, "more than %zu bytes; expected fewer in one line", room);
+      return false;
+    }
+    bytes[(*count)++] = (uint8_t)value;
+  }
+  return true;
+}
+
+/* A length and that many bytes. */
+static bool parse_counted_bytes(const stic_raw_reader *r, words *w, uint8_t *bytes, size_t room, size_t *count,
+                                stic_error *err)
+{
+  const char *text;
+  size_t length;
+  int64_t told;
+  char shown[24];
+
+  if (!next_word(w, &text, &length) ||
+      stic_number_parse_integer(text, length, 1, (int64_t)room, &told) != STIC_NUMBER_OK) {
+    bad(r, err, "length is '%s'; expected a number of bytes from 1 to %zu",
+        stic_error_quote(text, length, shown, sizeof shown), room);
+    return false;
+  }
+  if (!parse_bytes(r, w, bytes, room, count, err))
+    return false;
+  if ((int64_t)*count != told) {
+    bad(r, err, "found %zu bytes; expected the %lld that the line tells", *count, (long long)told);
+    return false;
+  }
+  return true;
+}
+
+/* ---- records ----------------------------------------------------------------------------- */
+
+static stic_raw_status give(stic_raw_reader *r, int64_t t_ns, size_t count, stic_raw_record *record,
+                            stic_error *err)
+{
+  if (r->begun && t_ns < r->last_ns)
+    return bad(r, err, "time %lld ns is before the last record's %lld; expected it not to decrease",
+               (long long)t_ns, (long long)r->last_ns);
+  r->begun = true;
+  r->last_ns = t_ns;
+  record->t_ns = t_ns;
+  record->device = r->device;
+  record->length = count;
+  record->bytes = r->bytes;
+  return STIC_RAW_RECORD;
+}
+
+static stic_raw_status read_serial(stic_raw_reader *r, words *w, stic_raw_record *record, stic_error *err)
+{
+  const char *text;
+  size_t length, count;
+  int64_t t_ns;
+  char shown[40];
+
+  if (!next_word(w, &text, &length))
+    return STIC_RAW_WAIT; /* an empty line */
+  if (stic_number_parse_integer(text, length, 0, INT64_MAX, &t_ns) != STIC_NUMBER_OK)
+    return bad(r, err, "time is '%s'; expected whole nanoseconds, then bytes",
+               stic_error_quote(text, length, shown, sizeof shown));
+  if (!parse_bytes(r, w, r->bytes, sizeof r->bytes, &count, err))
+    return STIC_RAW_BAD;
+  if (count == 0)
+    return bad(r, err, "a time without bytes; expected 't_ns hex ...'");
+  return give(r, t_ns, count, record, err);
+}
+
+/* sec.usec, with leading zeros as hid-recorder writes them. */
+static bool parse_time(const char *text, size_t length, int64_t *t_ns)
+{
+  while (length > 1 && text[0] == '0' && text[1] != '.') {
+    text++;
+    length--;
+  }
+  return stic_number_parse_ns(text, length, t_ns) == STIC_NUMBER_OK && *t_ns >= 0;
+}
+
+static stic_raw_status read_event(stic_raw_reader *r, words *w, stic_raw_record *record, stic_error *err)
+{
+  const char *text;
+  size_t length, count;
+  int64_t t_ns;
+  char shown[40];
+
+  if (!next_word(w, &text, &length) || !parse_time(text, length, &t_ns))
+    return bad(r, err, "time is '%s'; expected E: sec.usec length hex ...",
+               stic_error_quote(text, length, shown, sizeof shown));
+  if (!parse_counted_bytes(r, w, r->bytes, sizeof r->bytes, &count, err))
+    return STIC_RAW_BAD;
+  return give(r, t_ns, count, record, err);
+}
+
+static stic_raw_status read_device_number(stic_raw_reader *r, words *w, stic_error *err)
+{
+  const char *text;
+  size_t length;
+  int64_t device;
+  char shown[24];
+
+  if (!next_word(w, &text, &length) ||
+      stic_number_parse_integer(text, length, 0, STIC_RAW_DEVICES_MAX - 1, &device) != STIC_NUMBER_OK)
+    return bad(r, err, "device is '%s'; expected D: 0 to %d",
+               stic_error_quote(text, length, shown, sizeof shown), STIC_RAW_DEVICES_MAX - 1);
+  r->device = (int)device;
+  return STIC_RAW_WAIT;
+}
+
+static stic_raw_status read_ids(stic_raw_reader *r, words *w, stic_error *err)
+{
+  stic_raw_device *d = &r->devices[r->device];
+  int *const ids[] = {&d->bus, &d->vendor, &d->product};
+  const char *text;
+  size_t length;
+
+  for (int i = 0; i < 3; i++) {
+    if (!next_word(w, &text, &length) || !parse_hex(text, length, ids[i]))
+      return bad(r, err, "expected I: bus vendor product, each of 1 to 4 hexadecimal digits");
+  }
+  return STIC_RAW_WAIT;
+}
+
+static stic_raw_status read_descriptor(stic_raw_reader *r, words *w, stic_error *err)
+{
+  stic_raw_device *d = &r->devices[r->device];
+
+  return parse_counted_bytes(r, w, d->descriptor, sizeof d->descriptor, &d->descriptor_length, err)
+           ? STIC_RAW_WAIT
+           : STIC_RAW_BAD;
+}
+
+static stic_raw_status read_text(const words *w, char *out, size_t out_size)
+{
+  const char *at = w->at;
+
+  while (at < w->end && *at == ' ')
+    at++;
+  stic_error_quote(at, (size_t)(w->end - at), out, out_size);
+  return STIC_RAW_WAIT;
+}
+
+static stic_raw_status read_hid(stic_raw_reader *r, words *w, stic_raw_record *record, stic_error *err)
+{
+  stic_raw_device *d = &r->devices[r->device];
+  const char *text;
+  size_t length;
+  char shown[24];
+
+  if (!next_word(w, &text, &length))
+    return STIC_RAW_WAIT;
+  if (length == 2 && text[1] == ':') {
+    switch (text[0]) {
+    case 'D':
+      return read_device_number(r, w, err);
+    case 'R':
+      return read_descriptor(r, w, err);
+    case 'N':
+      return read_text(w, d->name, sizeof d->name);
+    case 'P':
+      return read_text(w, d->place, sizeof d->place);
+    case 'I':
+      return read_ids(r, w, err);
+    case 'E':
+      return read_event(r, w, record, err);
+    default:
+      break;
+    }
+  }
+  return bad(r, err, "found '%s'; expected a line that starts with D: R: N: P: I: E: or #",
+             stic_error_quote(text, length, shown, sizeof shown));
+}
+
+/* The first line that is no foreign comment tells the kind. */
+static stic_raw_status learn_kind(stic_raw_reader *r, const char *text, size_t length, stic_error *err)
+{
+  const int64_t version = stic_line_format_version(text, length, "serial");
+
+  if (version >= 0 && version != FORMAT_VERSION)
+    return bad(r, err, "the recording has format version %lld; expected %d", (long long)version, FORMAT_VERSION);
+  if (version >= 0) {
+    r->kind = STIC_RAW_SERIAL;
+    r->kind_known = true;
+  } else if (length >= 2 && text[1] == ':') {
+    r->kind = STIC_RAW_HID;
+    r->kind_known = true;
+  } else if (length > 0 && text[0] != '#') {
+    return bad(r, err, "expected '%s' or a recording by hid-recorder", STIC_RAW_FORMAT);
+  }
+  return STIC_RAW_WAIT;
+}
+
+/* One line: a record, or STIC_RAW_WAIT for any other. */
+static stic_raw_status read_line(stic_raw_reader *r, const char *text, size_t length, stic_raw_record *record,
+                                 stic_error *err)
+{
+  words w = {text, text + length};
+
+  if (!r->kind_known) {
+    const stic_raw_status status = learn_kind(r, text, length, err);
+
+    if (status != STIC_RAW_WAIT || !r->kind_known)
+      return status;
+  }
+  if (length == 0 || text[0] == '#')
+    return STIC_RAW_WAIT;
+  return r->kind == STIC_RAW_SERIAL ? read_serial(r, &w, record, err) : read_hid(r, &w, record, err);
+}
+
+stic_raw_status stic_raw_next(stic_raw_reader *r, stic_raw_record *record, stic_error *err)
+{
+  for (;;) {
+    const char *text;
+    size_t length;
+    stic_raw_status status;
+
+    switch (stic_line_reader_next(r->lines, &text, &length)) {
+    case STIC_LINE_READ:
+      status = read_line(r, text, length, record, err);
+      if (status != STIC_RAW_WAIT)
+        return status;
+      break;
+    case STIC_LINE_TOO_LONG:
+      return bad(r, err, "the line is longer than %d bytes", STIC_LINE_MAX);
+    case STIC_LINE_UNFINISHED:
+      break;
+    case STIC_LINE_END:
+      if (!r->begun)
+        return bad(r, err, "the recording holds no records; expected '%s' or a recording by hid-recorder",
+                   STIC_RAW_FORMAT);
+      return STIC_RAW_END;
+    case STIC_LINE_WAIT:
+      return STIC_RAW_WAIT;
+    case STIC_LINE_FAILED:
+      return bad(r, err, "cannot read: %s", strerror(errno));
+    }
+  }
+}
+
+/* ---- writing ----------------------------------------------------------------------------- */
+
+struct stic_raw_writer {
+  int fd;
+  bool owned; /* fd is ours to close */
+  bool begun;
+  stic_raw_kind kind;
+  int device;
+  int64_t start_ns;
+  char path[256];
+  char line[STIC_RAW_BYTES_MAX * 3 + 64];
+};
+
+static size_t put_bytes(const uint8_t *bytes, size_t length, char *out)
+{
+  static const char digits[] = "0123456789abcdef";
+
+  for (size_t i = 0; i < length; i++) {
+    out[3 * i] = ' ';
+    out[3 * i + 1] = digits[bytes[i] >> 4];
+    out[3 * i + 2] = digits[bytes[i] & 15];
+  }
+  return 3 * length;
+}
+
+static stic_status write_line(stic_raw_writer *w, size_t length, stic_error *err)
+{
+  const char *at = w->line;
+
+  w->line[length++] = '\n';
+  while (length > 0) {
+    const ssize_t n = write(w->fd, at, length);
+
+    if (n < 0 && errno == EINTR)
+      continue;
+    if (n <= 0)
+      return stic_error_set(err, STIC_CANNOT_WRITE, w->path, 0, "cannot write: %s",
+                            strerror(n < 0 ? errno : ENOSPC));
+    at += n;
+    length -= (size_t)n;
+  }
+  return STIC_OK;
+}
+
+static stic_status write_text(stic_raw_writer *w, stic_error *err, const char *format, ...) STIC_PRINTF(3, 4);
+
+static stic_status write_text(stic_raw_writer *w, stic_error *err, const char *format, ...)
+{
+  va_list args;
+  int n;
+
+  va_start(args, format);
+  n = vsnprintf(w->line, sizeof w->line - 1, format, args);
+  va_end(args);
+  assert(n >= 0 && (size_t)n < sizeof w->line - 1);
+  return write_line(w, (size_t)n, err);
+}
+
+static stic_status write_head(stic_raw_writer *w, const stic_raw_device *device, stic_error *err)
+{
+  stic_status status;
+  size_t n;
+
+  if (w->kind == STIC_RAW_SERIAL)
+    return write_text(w, err, "%s", STIC_RAW_FORMAT);
+  status = write_text(w, err, "D: 0");
+  if (status == STIC_OK && device->descriptor_length > 0) {
+    n = (size_t)snprintf(w->line, sizeof w->line, "R: %zu", device->descriptor_length);
+    n += put_bytes(device->descriptor, device->descriptor_length, w->line + n);
+    status = write_line(w, n, err);
+  }
+  if (status == STIC_OK)
+    status = write_text(w, err, "N: %s", device->name);
+  if (status == STIC_OK)
+    status = write_text(w, err, "P: %s", device->place);
+  if (status == STIC_OK)
+    status = write_text(w, err, "I: %x %04x %04x", (unsigned)device->bus, (unsigned)device->vendor,
+                        (unsigned)device->product);
+  return status;
+}
+
+stic_status stic_raw_create(const char *path, stic_raw_kind kind, const stic_raw_device *device,
+                            stic_raw_writer **writer, stic_error *err)
+{
+  const bool standard_output = strcmp(path, "-") == 0;
+  stic_raw_writer *w = malloc(sizeof *w);
+  stic_status status;
+
+  assert((kind == STIC_RAW_HID) == (device != NULL));
+  *writer = NULL;
+  if (!w)
+    return stic_error_set(err, STIC_NO_MEMORY, path, 0, "out of memory");
+  w->fd = standard_output ? STDOUT_FILENO : open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  w->owned = !standard_output;
+  w->begun = false;
+  w->kind = kind;
+  w->device = 0;
+  snprintf(w->path, sizeof w->path, "%s", standard_output ? "standard output" : path);
+  if (w->fd < 0) {
+    status = stic_error_set(err, STIC_CANNOT_WRITE, path, 0, "cannot write: %s", strerror(errno));
+    free(w);
+    return status;
+  }
+  status = write_head(w, device, err);
+  if (status != STIC_OK)
+    stic_raw_finish(w, NULL);
+  else
+    *writer = w;
+  return status;
+}
+
+stic_status stic_raw_write(stic_raw_writer *w, int device, int64_t t_ns, const uint8_t *bytes, size_t length,
+                           stic_error *err)
+{
+  size_t n;
+
+  assert(length >= 1 && length <= STIC_RAW_BYTES_MAX && device >= 0 && device < STIC_RAW_DEVICES_MAX);
+  if (w->kind == STIC_RAW_SERIAL) {
+    n = stic_format_integer(t_ns, w->line);
+  } else {
+    int64_t us;
+
+    if (device != w->device) {
+      const stic_status status = write_text(w, err, "D: %d", device);
+
+      if (status != STIC_OK)
+        return status;
+      w->device = device;
+    }
+    if (!w->begun)
+      w->start_ns = t_ns;
+    w->begun = true;
+    us = (t_ns - w->start_ns) / US;
+    n = (size_t)snprintf(w->line, sizeof w->line, "E: %06lld.%06lld %zu", (long long)(us / 1000000),
+                         (long long)(us % 1000000), length);
+  }
+  n += put_bytes(bytes, length, w->line + n);
+  return write_line(w, n, err);
+}
+
+stic_status stic_raw_finish(stic_raw_writer *writer, stic_error *err)
+{
+  stic_status status = STIC_OK;
+
+  if (!writer)
+    return STIC_OK;
+  if (writer->owned && close(writer->fd) != 0)
+    status = stic_error_set(err, STIC_CANNOT_WRITE, writer->path, 0, "cannot write: %s", strerror(errno));
+  free(writer);
+  return status;
+}

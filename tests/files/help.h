@@ -1,0 +1,54 @@
+/* What the tests of files and program share. */
+#ifndef STIC_TEST_HELP_H
+#define STIC_TEST_HELP_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <stdbool.h>
+#include <sys/types.h>
+
+/* A scene that is right, in lines 1 to 10. */
+extern const char stic_test_scene[];
+
+/* A folder of this test program, made on first use; stic_test_clean_up() removes it. */
+const char *stic_test_folder(void);
+int stic_test_clean_up(void **state);
+
+/* FOLDER/name; stays valid. */
+const char *stic_test_path(const char *name);
+
+/* Writes a file of the folder whole; returns its path. */
+const char *stic_test_write(const char *name, const char *text);
+const char *stic_test_write_bytes(const char *name, const void *data, size_t length);
+
+/* A file's text, to be freed; NULL if there is none. */
+char *stic_test_read(const char *path);
+
+/* How many entries the folder has whose names contain `part`. */
+int stic_test_count_entries(const char *part);
+
+/* A text with lines of a trace: the format line, the header, `count` good samples at 50 Hz. To be freed. */
+char *stic_test_trace(int count);
+
+/* Runs the program ($STICTION) with arguments up to NULL and waits. */
+typedef struct stic_test_run {
+  int code;        /* exit code; 1000 + n if killed by signal n */
+  char out[65536]; /* standard output */
+  char err[65536]; /* standard error */
+} stic_test_run;
+const stic_test_run *stic_test_program(const char *first, ...);
+
+/* Starts it with standard output and error to files "out" and "err", standard input from `input` (NULL:
+ * empty), and does not wait. */
+pid_t stic_test_start(const char *input, const char *const *arguments);
+int stic_test_wait(pid_t child);
+
+/* Fails unless `text` contains `part`, and shows both. */
+void stic_test_contains(const char *text, const char *part);
+
+#endif

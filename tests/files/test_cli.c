@@ -1,0 +1,268 @@
+/* The program as users and scripts see it: exit codes, messages, outputs, signals. */
+#include "help.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+static const char *scene, *trace, *bad_trace;
+
+static int set_up(void **state)
+{
+  static char paths[3][256];
+  char *text = stic_test_trace(500);
+
+  (void)state;
+  strcpy(paths[0], stic_test_write("scene.yaml", stic_test_scene));
+  strcpy(paths[1], stic_test_write("hand.csv", text));
+  strcpy(paths[2], stic_test_write("bad.csv", "# stiction-trace 1\n0,0.3,0.2,0,0,0,0,1,0\n1,2\n"));
+  scene = paths[0];
+  trace = paths[1];
+  bad_trace = paths[2];
+  free(text);
+  return 0;
+}
+
+static void expect(const stic_test_run *run, int code, const char *words)
+{
+  if (run->code != code)
+    fail_msg("exit code %d, not %d: %s", run->code, code, run->err);
+  stic_test_contains(run->err, words);
+}
+
+static void test_help(void **state)
+{
+  static const char *const commands[] = {"replay", "run", "check", "bench"};
+
+  (void)state;
+  expect(stic_test_program("--help", NULL), 0, "");
+  stic_test_contains(stic_test_program("--version", NULL)->out, "stiction ");
+  for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
+    const stic_test_run *run = stic_test_program(commands[i], "--help", NULL);
+
+    assert_int_equal(run->code, 0);
+    stic_test_contains(run->out, "Usage: stiction ");
+    assert_string_equal(run->err, "");
+  }
+}
+
+static void test_usage(void **state)
+{
+  (void)state;
+  expect(stic_test_program(NULL), 2, "which command?");
+  expect(stic_test_program("dance", NULL), 2, "unknown command 'dance'");
+  expect(stic_test_program("replay", scene, NULL), 2, "arguments are missing");
+  expect(stic_test_program("replay", scene, trace, trace, NULL), 2, "one argument too many");
+  expect(stic_test_program("replay", scene, trace, "--nonsense", NULL), 2, "--nonsense");
+  expect(stic_test_program("replay", scene, trace, "--log", NULL), 2, "--log");
+  expect(stic_test_program("replay", scene, trace, "--accuracy", "good", NULL), 2, "accuracy 'good'");
+  expect(stic_test_program("replay", scene, trace, "--precision", "f128", NULL), 2, "precision 'f128'");
+  expect(stic_test_program("replay", scene, trace, "--set", "friction", NULL), 2, "expected KEY=VALUE");
+  expect(stic_test_program("replay", scene, trace, "--set", "a.b=1", NULL), 2, "unknown key 'a'");
+  expect(stic_test_program("replay", scene, trace, "--log", trace, NULL), 2, "is an input");
+  expect(stic_test_program("replay", scene, trace, "--log", "-", "--events", "-", NULL), 2, "two outputs");
+  expect(stic_test_program("replay", scene, trace, "--frames", "x", "--size", "12", NULL), 2, "--size 12");
+  expect(stic_test_program("run", scene, NULL), 2, "no device");
+  expect(stic_test_program("run", scene, "--device", "x", NULL), 2, "unknown device");
+  expect(stic_test_program("bench", "x", NULL), 2, "unknown measurement 'x'");
+}
+
+static void test_bad_files(void **state)
+{
+  const char *log = stic_test_path("log.csv"), *bad_scene = stic_test_write("bad.yaml", "stiction: 1\nsize: 3\n");
+
+  (void)state;
+  expect(stic_test_program("replay", bad_scene, trace, NULL), 3, "bad.yaml:2: unknown key 'size'");
+  expect(stic_test_program("replay", scene, bad_trace, "--log", log, NULL), 3, "bad.csv:3: found 2 fields");
+  assert_int_equal(access(log, F_OK), -1);
+  expect(stic_test_program("replay", scene, bad_trace, "--lenient", "--log", log, NULL), 0, "1 bad line passed over");
+  assert_int_equal(access(log, F_OK), 0);
+  unlink(log);
+  expect(stic_test_program("replay", scene, "/nonexistent", NULL), 3, "No such file");
+  expect(stic_test_program("check", bad_scene, bad_trace, NULL), 1, "bad.csv:3: found 2 fields");
+  expect(stic_test_program("check", scene, trace, NULL), 0, "");
+  stic_test_contains(stic_test_program("check", scene, trace, NULL)->out, "0 errors");
+}
+
+static void test_outputs(void **state)
+{
+  const char *log = stic_test_path("log.csv"), *again = stic_test_path("again.csv");
+  char *first, *second;
+
+  (void)state;
+  expect(stic_test_program("replay", scene, trace, "--log", log, "--events", stic_test_path("e.csv"), "--timing",
+                           stic_test_path("t.json"), NULL), 0, "");
+  expect(stic_test_program("replay", scene, trace, "--log", again, NULL), 0, "");
+  first = stic_test_read(log);
+  second = stic_test_read(again);
+  assert_string_equal(first, second);
+  free(first);
+  free(second);
+  expect(stic_test_program("replay", scene, trace, "--log", "/dev/full", NULL), 5, "No space left");
+  expect(stic_test_program("replay", scene, trace, "--log", "/nonexistent/log", NULL), 5, "cannot write");
+  expect(stic_test_program("replay", scene, trace, "--events", "/nonexistent/e", "--log", stic_test_path("no.csv"), NULL), 5, "");
+  assert_int_equal(access(stic_test_path("no.csv"), F_OK), -1);
+  assert_int_equal(stic_test_count_entries(".tmp"), 0);
+}
+
+static void pause_ms(long ms)
+{
+  const struct timespec time = {ms / 1000, ms % 1000 * 1000000};
+
+  nanosleep(&time, NULL);
+}
+
+/* A replay that waits for more of its trace is ended by a signal and leaves nothing. */
+static void test_signal_replay(void **state)
+{
+  static const int signals[] = {SIGINT, SIGTERM};
+  const char *pipe_path = stic_test_path("pipe"), *log = stic_test_path("signal.csv");
+  const char *const arguments[] = {"replay", scene, pipe_path, "--log", log, NULL};
+
+  (void)state;
+  assert_int_equal(mkfifo(pipe_path, 0600), 0);
+  for (int i = 0; i < 2; i++) {
+    const pid_t child = stic_test_start(NULL, arguments);
+    const int fd = open(pipe_path, O_WRONLY);
+    static const char text[] = "# stiction-trace 1\n0,0.3,0.2,0,0,0,0,1,0\n";
+
+    assert_true(fd >= 0);
+    assert_int_equal(write(fd, text, sizeof text - 1), sizeof text - 1);
+    pause_ms(200);
+    kill(child, signals[i]);
+    assert_int_equal(stic_test_wait(child), 128 + signals[i]);
+    close(fd);
+    assert_int_equal(access(log, F_OK), -1);
+    assert_int_equal(stic_test_count_entries(".tmp"), 0);
+  }
+}
+
+static int lines_in(const char *path)
+{
+  char *text = stic_test_read(path);
+  int count = 0;
+
+  for (const char *c = text; c && *c; c++)
+    count += *c == '\n' && c[1] != '#';
+  free(text);
+  return count;
+}
+
+static void test_signal_run(void **state)
+{
+  char device[300];
+  const char *log = stic_test_path("live.csv"), *record = stic_test_path("record.csv");
+  const char *const arguments[] = {"run", scene, "--device", device, "--log", log, "--record", record, NULL};
+  pid_t child;
+
+  (void)state;
+  snprintf(device, sizeof device, "trace:loop,file=%s", trace);
+  child = stic_test_start(NULL, arguments);
+  pause_ms(500);
+  kill(child, SIGINT);
+  assert_int_equal(stic_test_wait(child), 0);
+  assert_true(lines_in(log) > 10);
+  assert_int_equal(lines_in(log), lines_in(record));
+  /* After kill -9 the recording is there, whole lines and all. */
+  child = stic_test_start(NULL, arguments);
+  pause_ms(500);
+  kill(child, SIGKILL);
+  assert_int_equal(stic_test_wait(child), 1000 + SIGKILL);
+  assert_true(lines_in(record) > 10);
+  expect(stic_test_program("replay", scene, record, NULL), 0, "");
+}
+
+/* What a run recorded gives the run's rows again. */
+static void test_run_and_replay(void **state)
+{
+  char device[300], *live, *again;
+  const char *record = stic_test_path("record2.csv");
+
+  (void)state;
+  snprintf(device, sizeof device, "trace:speed=100,file=%s", trace);
+  expect(stic_test_program("run", scene, "--device", device, "--record", record, "--log", stic_test_path("l1.csv"),
+                           "--timing", stic_test_path("t1.json"), NULL), 0, "500 samples");
+  expect(stic_test_program("replay", scene, record, "--log", stic_test_path("l2.csv"), NULL), 0, "");
+  live = stic_test_read(stic_test_path("l1.csv"));
+  again = stic_test_read(stic_test_path("l2.csv"));
+  assert_string_equal(strstr(live, "\nt,state"), strstr(again, "\nt,state"));
+  free(live);
+  free(again);
+}
+
+static void test_standard_streams(void **state)
+{
+  const char *const arguments[] = {"replay", scene, "-", "--log", "-", NULL};
+  char *out;
+
+  (void)state;
+  assert_int_equal(stic_test_wait(stic_test_start(trace, arguments)), 0);
+  out = stic_test_read(stic_test_path("out"));
+  stic_test_contains(out, "# stiction-log 1\n");
+  stic_test_contains(out, "\n9.980000000,");
+  free(out);
+}
+
+/* A reader that leaves ends the program without a word. */
+static void test_closed_pipe(void **state)
+{
+  char command[1024];
+  char *text;
+  int status;
+
+  (void)state;
+  snprintf(command, sizeof command, "( \"$STICTION\" replay %s %s --log - 2>%s; echo $? >%s ) | head -1 >/dev/null",
+           scene, trace, stic_test_path("pipe-err"), stic_test_path("pipe-code"));
+  status = system(command);
+  assert_int_equal(status, 0);
+  text = stic_test_read(stic_test_path("pipe-err"));
+  assert_string_equal(text, "");
+  free(text);
+}
+
+static void test_frames(void **state)
+{
+  const char *folder = stic_test_path("frames");
+  char *text = stic_test_trace(26); /* 0.5 s: 16 pictures */
+  const char *short_trace = stic_test_write("short.csv", text);
+  char path[300];
+
+  (void)state;
+  free(text);
+  expect(stic_test_program("replay", scene, short_trace, "--frames", folder, "--size", "160x120", NULL), 0, "");
+  snprintf(path, sizeof path, "%s/frame_000015.png", folder);
+  assert_int_equal(access(path, F_OK), 0);
+  snprintf(path, sizeof path, "%s/frame_000016.png", folder);
+  assert_int_equal(access(path, F_OK), -1);
+  expect(stic_test_program("replay", scene, short_trace, "--frames", folder, "--size", "160x120", NULL), 5, "--force");
+  expect(stic_test_program("replay", scene, short_trace, "--frames", folder, "--size", "160x120", "--force", NULL), 0, "");
+}
+
+static void test_bench(void **state)
+{
+  const stic_test_run *run;
+
+  (void)state;
+  run = stic_test_program("bench", "speed", "--quick", NULL);
+  expect(run, 0, "");
+  stic_test_contains(run->out, "hash");
+  stic_test_contains(run->out, "CSV to CSV");
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_help),          cmocka_unit_test(test_usage),       cmocka_unit_test(test_bad_files),
+    cmocka_unit_test(test_outputs),       cmocka_unit_test(test_signal_replay), cmocka_unit_test(test_signal_run),
+    cmocka_unit_test(test_run_and_replay), cmocka_unit_test(test_standard_streams), cmocka_unit_test(test_closed_pipe),
+    cmocka_unit_test(test_frames),        cmocka_unit_test(test_bench),
+  };
+
+  return cmocka_run_group_tests(tests, set_up, stic_test_clean_up);
+}
