@@ -13,7 +13,7 @@ static void test_specifications(void **state)
     const char *text, *words;
   } bad[] = {
     {"", "no name"}, {":file=x", "no name"}, {"trace:", "expected NAME:key=value"}, {"trace:=x", "expected NAME:key=value"},
-    {"trace:file=a,,loop", "expected NAME:key=value"}, {"none:file=a", "unknown device 'none'; expected trace"},
+    {"trace:file=a,,loop", "expected NAME:key=value"}, {"none:file=a", "unknown device 'none'; expected"},
     {"trace:fil=a", "unknown key 'fil'; expected file=, speed=, loop"}, {"trace:file", "'file' has no value"},
     {"trace:file=", "'file' has no value"}, {"trace:file=a,loop=1", "'loop' takes no value"},
     {"trace:file=a,file=b", "'file' is given twice"}, {"trace:loop", "expected trace:file=FILE"},

@@ -78,7 +78,7 @@ static const wrong cases[] = {
   /* the object */
   {"[0.16, 0.08, 0.10]", "[0.16, 0.08]", 4, "object.size is a list of 2"},
   {"[0.16, 0.08, 0.10]", "[0.16,\n    -0.08, 0.10]", 5, "object.size is '-0.08'"},
-  {"[0.16, 0.08, 0.10]", "[0.16, 0.08, 1e9]", 4, "object.size is '1e9'"},
+  {"[0.16, 0.08, 0.10]", "[0.16, 0.08, 1e10]", 4, "object.size is '1e10'"},
   {"size: [0.16, 0.08, 0.10]", "size: [0.16, 0.08, 0.10]\n  depth: 1", 5, "object.depth beside size"},
   {"size: [0.16, 0.08, 0.10]", "size: [0.16, 0.08, 0.10]\n  polygon: [[0, 0], [1, 0], [0, 1]]", 5, "both size and polygon"},
   {"size: [0.16, 0.08, 0.10]", "polygon: [[0, 0], [1, 0]]", 4, "object.polygon is a list of 2"},
