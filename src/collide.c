@@ -8,12 +8,12 @@
 #include <time.h>
 
 struct stic_collider {
-  dGeomID object;                       /* the polygon, extruded along z */
-  dGeomID surfaces[STIC_SURFACES_MAX];  /* one plane each, moved out by the reach at every query */
+  dGeomID object;                      /* the polygon, extruded along z */
+  dGeomID surfaces[STIC_SURFACES_MAX]; /* one plane each, moved out by the reach at every query */
   double normals[STIC_SURFACES_MAX][2];
   int vertex_count, surface_count;
-  double unit, radius;                  /* radius: farthest vertex from the centre, in units */
-  double centre[2];                     /* mean of the vertices: ODE wants its origin inside */
+  double unit, radius; /* radius: farthest vertex from the centre, in units */
+  double centre[2];    /* mean of the vertices: ODE wants its origin inside */
   bool clock_on;
   int64_t elapsed_ns;
   /* ODE keeps pointers to these. */
@@ -24,13 +24,16 @@ struct stic_collider {
 };
 
 /* The prism over the polygon: ODE's convex geom wants points, face planes and face outlines. */
-static void extrude(stic_collider *c, const stic_scene *scene) {
+static void extrude(stic_collider *c, const stic_scene *scene)
+{
   int n = scene->vertex_count;
   unsigned *face = c->polygons;
   for (int i = 0; i < n; i++)
-    for (int k = 0; k < 2; k++) c->centre[k] += scene->vertices[i][k] / c->unit / n;
+    for (int k = 0; k < 2; k++)
+      c->centre[k] += scene->vertices[i][k] / c->unit / n;
   for (int i = 0; i < n; i++) {
-    double x = scene->vertices[i][0] / c->unit - c->centre[0], y = scene->vertices[i][1] / c->unit - c->centre[1];
+    double x = scene->vertices[i][0] / c->unit - c->centre[0],
+           y = scene->vertices[i][1] / c->unit - c->centre[1];
     const double *next = scene->vertices[(i + 1) % n];
     double ex = next[0] / c->unit - c->centre[0] - x, ey = next[1] / c->unit - c->centre[1] - y;
     double length = sqrt(ex * ex + ey * ey);
@@ -52,13 +55,16 @@ static void extrude(stic_collider *c, const stic_scene *scene) {
   }
   for (int k = 0; k < 2; k++) {
     *face++ = (unsigned)n;
-    for (int i = 0; i < n; i++) *face++ = (unsigned)(k == 0 ? n - 1 - i : n + i);
+    for (int i = 0; i < n; i++)
+      *face++ = (unsigned)(k == 0 ? n - 1 - i : n + i);
   }
 }
 
-stic_collider *stic_collider_create(const stic_scene *scene, double unit) {
+stic_collider *stic_collider_create(const stic_scene *scene, double unit)
+{
   stic_collider *c = calloc(1, sizeof *c);
-  if (!c) return NULL;
+  if (!c)
+    return NULL;
   c->unit = unit;
   c->vertex_count = scene->vertex_count;
   extrude(c, scene);
@@ -72,7 +78,8 @@ stic_collider *stic_collider_create(const stic_scene *scene, double unit) {
   for (int s = 0; c->object && s < scene->surface_count; s++) {
     stic_normal_from_degrees(scene->surfaces[s].normal_deg, c->normals[s]);
     c->surfaces[s] = dCreatePlane(0, c->normals[s][0], c->normals[s][1], 0, 0);
-    if (!c->surfaces[s]) break;
+    if (!c->surfaces[s])
+      break;
     c->surface_count++;
   }
   if (!c->object || c->surface_count < scene->surface_count) {
@@ -82,52 +89,66 @@ stic_collider *stic_collider_create(const stic_scene *scene, double unit) {
   return c;
 }
 
-void stic_collider_destroy(stic_collider *c) {
-  if (!c) return;
-  for (int s = 0; s < c->surface_count; s++) dGeomDestroy(c->surfaces[s]);
-  if (c->object) dGeomDestroy(c->object);
+void stic_collider_destroy(stic_collider *c)
+{
+  if (!c)
+    return;
+  for (int s = 0; s < c->surface_count; s++)
+    dGeomDestroy(c->surfaces[s]);
+  if (c->object)
+    dGeomDestroy(c->object);
   dCloseODE();
   free(c);
 }
 
-static int64_t now_ns(void) {
+static int64_t now_ns(void)
+{
   struct timespec t;
   clock_gettime(CLOCK_MONOTONIC, &t);
   return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
 }
 
 /* Which vertex of the prism ODE's contact point is; it is one of them, up to its own rounding. */
-static int nearest_vertex(const stic_collider *c, const dReal *point, double cosine, double sine) {
+static int nearest_vertex(const stic_collider *c, const dReal *point, double cosine, double sine)
+{
   int best = 0;
   double best_distance = INFINITY;
   for (int i = 0; i < c->vertex_count; i++) {
     const dReal *v = c->points + 3 * i;
     double dx = cosine * v[0] - sine * v[1] - point[0], dy = sine * v[0] + cosine * v[1] - point[1];
     double distance = dx * dx + dy * dy;
-    if (distance < best_distance) best_distance = distance, best = i;
+    if (distance < best_distance)
+      best_distance = distance, best = i;
   }
   return best;
 }
 
-static uint64_t near_vertices(stic_collider *c, int s, double gap, double cosine, double sine, double reach) {
+static uint64_t near_vertices(stic_collider *c, int s, double gap, double cosine, double sine, double reach)
+{
   const uint64_t all = c->vertex_count == 64 ? ~UINT64_C(0) : (UINT64_C(1) << c->vertex_count) - 1;
-  if (gap > c->radius + reach) return 0;
+  if (gap > c->radius + reach)
+    return 0;
   /* ODE's convex-plane test reports nothing for an object that lies entirely behind the plane. */
-  if (gap <= reach - c->radius) return all;
+  if (gap <= reach - c->radius)
+    return all;
   dGeomPlaneSetParams(c->surfaces[s], c->normals[s][0], c->normals[s][1], 0, reach - gap);
   int count = dCollide(c->object, c->surfaces[s], 2 * c->vertex_count, c->contacts, sizeof c->contacts[0]);
   if (count == 0) {
     /* Either side of the moved plane: the deepest and the highest vertex agree in sign. */
     return dGeomPlanePointDepth(c->surfaces[s], c->points[0] * cosine - c->points[1] * sine,
-                                c->points[0] * sine + c->points[1] * cosine, 0) > 0 ? all : 0;
+                                c->points[0] * sine + c->points[1] * cosine, 0) > 0
+             ? all
+             : 0;
   }
   uint64_t mask = 0;
-  for (int i = 0; i < count; i++) mask |= UINT64_C(1) << nearest_vertex(c, c->contacts[i].pos, cosine, sine);
+  for (int i = 0; i < count; i++)
+    mask |= UINT64_C(1) << nearest_vertex(c, c->contacts[i].pos, cosine, sine);
   return mask;
 }
 
 int stic_collide_near(stic_collider *c, const double *gaps, double cosine, double sine, double reach,
-                      uint64_t *masks) {
+                      uint64_t *masks)
+{
   int64_t start = c->clock_on ? now_ns() : 0;
   const dMatrix3 rotation = {cosine, -sine, 0, 0, sine, cosine, 0, 0, 0, 0, 1, 0};
   dGeomSetRotation(c->object, rotation);
@@ -139,13 +160,18 @@ int stic_collide_near(stic_collider *c, const double *gaps, double cosine, doubl
     masks[s] = near_vertices(c, s, gap, cosine, sine, widened);
     found += masks[s] != 0;
   }
-  if (c->clock_on) c->elapsed_ns += now_ns() - start;
+  if (c->clock_on)
+    c->elapsed_ns += now_ns() - start;
   return found;
 }
 
-void stic_collider_clock(stic_collider *c, bool on) { c->clock_on = on; }
+void stic_collider_clock(stic_collider *c, bool on)
+{
+  c->clock_on = on;
+}
 
-int64_t stic_collider_take_ns(stic_collider *c) {
+int64_t stic_collider_take_ns(stic_collider *c)
+{
   int64_t elapsed = c->elapsed_ns;
   c->elapsed_ns = 0;
   return elapsed;

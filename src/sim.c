@@ -13,42 +13,48 @@ struct stic_sim {
   stic_scene scene;
   stic_settings settings;
   const stic_core *core;
-  void *state;              /* of the core */
+  void *state; /* of the core */
   stic_collider *collider;
   stic_event *events;
 
   bool started;
   bool held;
-  bool grip_down;           /* the button at the last sample */
-  int64_t t_ns;             /* of the last sample */
-  double hand_angle;        /* raw, unwrapped */
-  double angle_offset;      /* target angle minus hand angle, from the grip on */
-  double z, z_offset;       /* object's depth; object minus hand */
-  stic_hand hand;           /* at the last sample */
+  bool grip_down;      /* the button at the last sample */
+  int64_t t_ns;        /* of the last sample */
+  double hand_angle;   /* raw, unwrapped */
+  double angle_offset; /* target angle minus hand angle, from the grip on */
+  double z, z_offset;  /* object's depth; object minus hand */
+  stic_hand hand;      /* at the last sample */
   int64_t slips;
   bool timed;
   int64_t collide_ns, total_ns;
   stic_core_report report;
 };
 
-static const stic_core *core_of(stic_precision precision) {
+static const stic_core *core_of(stic_precision precision)
+{
   switch (precision) {
-    case STIC_F32: return &stic_core_f32;
-    case STIC_F80: return &stic_core_f80;
-    case STIC_F64: break;
+  case STIC_F32: return &stic_core_f32;
+  case STIC_F80: return &stic_core_f80;
+  case STIC_F64: break;
   }
   return &stic_core_f64;
 }
 
-stic_status stic_sim_create(const stic_scene *scene, const stic_settings *settings, stic_sim **out, stic_error *err) {
+stic_status stic_sim_create(const stic_scene *scene, const stic_settings *settings, stic_sim **out,
+                            stic_error *err)
+{
   assert(scene && settings && out);
   *out = NULL;
   stic_status status = stic_scene_validate(scene, err);
-  if (status != STIC_OK) return status;
+  if (status != STIC_OK)
+    return status;
   if (settings->level == STIC_LEVEL_SUBSTEP && (settings->substeps < 1 || settings->substeps > 1000000))
-    return stic_error_set(err, STIC_USAGE, NULL, 0, "substeps must be from 1 to 1000000, not %d", settings->substeps);
+    return stic_error_set(err, STIC_USAGE, NULL, 0, "substeps must be from 1 to 1000000, not %d",
+                          settings->substeps);
   if (!(settings->h_min > 0 && settings->h_min <= 1))
-    return stic_error_set(err, STIC_USAGE, NULL, 0, "h_min must be above 0 and at most 1 object size, not %g", settings->h_min);
+    return stic_error_set(err, STIC_USAGE, NULL, 0, "h_min must be above 0 and at most 1 object size, not %g",
+                          settings->h_min);
   stic_sim *sim = calloc(1, sizeof *sim);
   if (sim) {
     sim->core = core_of(settings->precision);
@@ -68,15 +74,18 @@ stic_status stic_sim_create(const stic_scene *scene, const stic_settings *settin
   return STIC_OK;
 }
 
-void stic_sim_destroy(stic_sim *sim) {
-  if (!sim) return;
+void stic_sim_destroy(stic_sim *sim)
+{
+  if (!sim)
+    return;
   stic_collider_destroy(sim->collider);
   free(sim->events);
   free(sim->state);
   free(sim);
 }
 
-static int64_t now_ns(void) {
+static int64_t now_ns(void)
+{
   struct timespec t;
   clock_gettime(CLOCK_MONOTONIC, &t);
   return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
@@ -84,18 +93,25 @@ static int64_t now_ns(void) {
 
 /* 2 atan2(qz, qw), unwrapped to the turn nearest to the last angle; a rotation by pi about an axis in the
  * plane has none, and keeps the last. */
-static double hand_angle(const stic_sim *sim, const double *q) {
+static double hand_angle(const stic_sim *sim, const double *q)
+{
   const double pi = 3.14159265358979323846;
-  if (q[2] == 0 && q[3] == 0) return sim->hand_angle;
+  if (q[2] == 0 && q[3] == 0)
+    return sim->hand_angle;
   double angle = 2 * atan2(q[2], q[3]);
-  if (angle > pi) angle -= 2 * pi;
-  else if (angle <= -pi) angle += 2 * pi;
-  if (!sim->started) return angle;
+  if (angle > pi)
+    angle -= 2 * pi;
+  else if (angle <= -pi)
+    angle += 2 * pi;
+  if (!sim->started)
+    return angle;
   return angle + 2 * pi * round((sim->hand_angle - angle) / (2 * pi));
 }
 
 /* Distance in the plane from a point to the object's polygon; 0 inside. */
-static double distance_to_object(const stic_scene *scene, double x, double y, double theta, double px, double py) {
+static double distance_to_object(const stic_scene *scene, double x, double y, double theta, double px,
+                                 double py)
+{
   double c = cos(theta), s = sin(theta), dx = px - x, dy = py - y;
   double bx = c * dx + s * dy, by = c * dy - s * dx, best = INFINITY;
   bool inside = true;
@@ -109,13 +125,15 @@ static double distance_to_object(const stic_scene *scene, double x, double y, do
   return inside ? 0 : best;
 }
 
-static void add_hand_event(stic_sim *sim, stic_event_kind kind, const stic_sample *sample) {
+static void add_hand_event(stic_sim *sim, stic_event_kind kind, const stic_sample *sample)
+{
   stic_event e = {(double)sample->t_ns * 1e-9, kind, -1, -1, sample->position[0], sample->position[1], 0};
   sim->core->add_event(sim->state, e);
 }
 
 /* The offsets between hand and object stay as they are at this moment. */
-static void take(stic_sim *sim, const stic_sample *sample) {
+static void take(stic_sim *sim, const stic_sample *sample)
+{
   double x, y, theta, bx, by;
   sim->core->pose(sim->state, &x, &y, &theta);
   if (sim->scene.hold == STIC_HOLD_START) {
@@ -132,31 +150,37 @@ static void take(stic_sim *sim, const stic_sample *sample) {
   add_hand_event(sim, STIC_EVENT_TAKE, sample);
 }
 
-static bool within_reach(const stic_sim *sim, const stic_sample *sample) {
+static bool within_reach(const stic_sim *sim, const stic_sample *sample)
+{
   double x, y, theta;
   sim->core->pose(sim->state, &x, &y, &theta);
-  return distance_to_object(&sim->scene, x, y, theta, sample->position[0], sample->position[1]) <= sim->scene.reach;
+  return distance_to_object(&sim->scene, x, y, theta, sample->position[0], sample->position[1]) <=
+         sim->scene.reach;
 }
 
 /* True if the object was taken at this very sample. */
-static bool update_grip(stic_sim *sim, const stic_sample *sample) {
+static bool update_grip(stic_sim *sim, const stic_sample *sample)
+{
   bool down = (sample->buttons & STIC_BUTTON_GRIP) != 0 && !sample->lost;
   bool pressed = down && !sim->grip_down;
   sim->grip_down = down;
   if (sim->scene.hold == STIC_HOLD_START) {
-    if (!sim->held) take(sim, sample);
+    if (!sim->held)
+      take(sim, sample);
     return !sim->started;
   }
   if (sim->held && !down) {
     sim->held = false;
     add_hand_event(sim, STIC_EVENT_RELEASE, sample);
   }
-  if (sim->held || !pressed || !within_reach(sim, sample)) return false;
+  if (sim->held || !pressed || !within_reach(sim, sample))
+    return false;
   take(sim, sample);
   return true;
 }
 
-void stic_sim_step(stic_sim *sim, const stic_sample *sample, stic_result *result) {
+void stic_sim_step(stic_sim *sim, const stic_sample *sample, stic_result *result)
+{
   assert(sim && sample && result);
   assert(!sim->started || sample->t_ns > sim->t_ns);
   int64_t start = sim->timed ? now_ns() : 0;
@@ -164,11 +188,14 @@ void stic_sim_step(stic_sim *sim, const stic_sample *sample, stic_result *result
   memset(&sim->report, 0, sizeof sim->report);
   sim->hand_angle = hand_angle(sim, sample->orientation);
   bool taken = update_grip(sim, sample);
-  stic_hand target = {sample->position[0], sample->position[1], sim->hand_angle + (sim->held ? sim->angle_offset : 0)};
+  stic_hand target = {sample->position[0], sample->position[1],
+                      sim->hand_angle + (sim->held ? sim->angle_offset : 0)};
   double t = (double)sample->t_ns * 1e-9;
   if (sim->held) {
-    if (taken) sim->core->relax(sim->state, target, t, &sim->report);
-    else sim->core->follow(sim->state, sim->hand, target, (double)sim->t_ns * 1e-9, t, &sim->report);
+    if (taken)
+      sim->core->relax(sim->state, target, t, &sim->report);
+    else
+      sim->core->follow(sim->state, sim->hand, target, (double)sim->t_ns * 1e-9, t, &sim->report);
     sim->z = sample->position[2] + sim->z_offset;
   }
   sim->slips += sim->report.slips;
@@ -192,18 +219,21 @@ void stic_sim_step(stic_sim *sim, const stic_sample *sample, stic_result *result
   }
 }
 
-const stic_event *stic_sim_events(const stic_sim *sim, int *count) {
+const stic_event *stic_sim_events(const stic_sim *sim, int *count)
+{
   *count = sim->core->event_count(sim->state);
   return sim->events;
 }
 
-void stic_sim_time_stages(stic_sim *sim, bool on) {
+void stic_sim_time_stages(stic_sim *sim, bool on)
+{
   sim->timed = on;
   stic_collider_clock(sim->collider, on);
   sim->collide_ns = sim->total_ns = 0;
 }
 
-void stic_sim_stage_times(const stic_sim *sim, int64_t *collide_ns, int64_t *total_ns) {
+void stic_sim_stage_times(const stic_sim *sim, int64_t *collide_ns, int64_t *total_ns)
+{
   *collide_ns = sim->collide_ns;
   *total_ns = sim->total_ns;
 }

@@ -13,28 +13,28 @@ typedef struct stic_hand {
 
 /* What RELAX and the accuracy levels report besides the pose. */
 typedef struct stic_core_report {
-  unsigned flags;      /* STIC_FLAG_ */
-  int iterations;      /* root-finding steps */
-  int relaxations;     /* RELAX calls */
-  int slips;           /* RELAX calls in which a contact slid */
-  int stages_worst;    /* most stages of one RELAX */
-  unsigned decisions;  /* bit per branch of JUDGE that was taken, STIC_DECISION_ */
+  unsigned flags;     /* STIC_FLAG_ */
+  int iterations;     /* root-finding steps */
+  int relaxations;    /* RELAX calls */
+  int slips;          /* RELAX calls in which a contact slid */
+  int stages_worst;   /* most stages of one RELAX */
+  unsigned decisions; /* bit per branch of JUDGE that was taken, STIC_DECISION_ */
 } stic_core_report;
 
 /* Branches of JUDGE and HOLD; tests use them to prove what they covered. */
 enum {
   STIC_DECISION_REST = 1,
-  STIC_DECISION_OPEN_SINGLE = 1 << 1,    /* 1. a single contact opens */
-  STIC_DECISION_SLIDE_SINGLE = 1 << 2,   /* 1. ... slides */
-  STIC_DECISION_SLIDE_EDGE = 1 << 3,     /* 2. two contacts on parallel surfaces slide */
-  STIC_DECISION_SLIDE_TRAMMEL = 1 << 4,  /* 2. two contacts on two surfaces slide */
-  STIC_DECISION_OPEN_TURN = 1 << 5,      /* 3. the others turn about the one vertex left */
-  STIC_DECISION_OPEN_PAIR = 1 << 6,      /* 3. the pair left slides */
-  STIC_DECISION_OPEN_SLIDE = 1 << 7,     /* 3. the single contact left slides, the others part */
-  STIC_DECISION_OPEN_ALL = 1 << 8,       /* 3. free */
-  STIC_DECISION_FLOW = 1 << 9,           /* 4. viscous flow */
-  STIC_DECISION_SNAP = 1 << 10,          /* a pinned equilibrium vanished */
-  STIC_DECISION_SLIDE_ON = 1 << 11       /* mu_s = mu_d: slid on without events */
+  STIC_DECISION_OPEN_SINGLE = 1 << 1,   /* 1. a single contact opens */
+  STIC_DECISION_SLIDE_SINGLE = 1 << 2,  /* 1. ... slides */
+  STIC_DECISION_SLIDE_EDGE = 1 << 3,    /* 2. two contacts on parallel surfaces slide */
+  STIC_DECISION_SLIDE_TRAMMEL = 1 << 4, /* 2. two contacts on two surfaces slide */
+  STIC_DECISION_OPEN_TURN = 1 << 5,     /* 3. the others turn about the one vertex left */
+  STIC_DECISION_OPEN_PAIR = 1 << 6,     /* 3. the pair left slides */
+  STIC_DECISION_OPEN_SLIDE = 1 << 7,    /* 3. the single contact left slides, the others part */
+  STIC_DECISION_OPEN_ALL = 1 << 8,      /* 3. free */
+  STIC_DECISION_FLOW = 1 << 9,          /* 4. viscous flow */
+  STIC_DECISION_SNAP = 1 << 10,         /* a pinned equilibrium vanished */
+  STIC_DECISION_SLIDE_ON = 1 << 11      /* mu_s = mu_d: slid on without events */
 };
 
 typedef struct stic_core {
@@ -47,7 +47,8 @@ typedef struct stic_core {
   /* One RELAX with the hand held still (first sample, and level `frame`). */
   void (*relax)(void *core, stic_hand hand, double t, stic_core_report *report);
   /* Follows the hand from the last judged pose to the next sample at the settings' level. */
-  void (*follow)(void *core, stic_hand from, stic_hand to, double t_from, double t_to, stic_core_report *report);
+  void (*follow)(void *core, stic_hand from, stic_hand to, double t_from, double t_to,
+                 stic_core_report *report);
   /* Pose, contacts, forces, residual into the result; `held` false: no spring. */
   void (*result)(void *core, stic_hand hand, bool held, stic_result *result);
   /* Current pose. */

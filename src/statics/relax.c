@@ -2,21 +2,27 @@
  * each other until the object rests (figures 4, 6 and 8 of the paper in one loop). */
 #include "statics.h"
 
-static void record(core *c, stic_event_kind kind, int vertex, int surface_index, vec where, real length) {
-  if (c->event_count >= c->event_capacity) return;
+static void record(core *c, stic_event_kind kind, int vertex, int surface_index, vec where, real length)
+{
+  if (c->event_count >= c->event_capacity)
+    return;
   double scale = kind == STIC_EVENT_SNAP ? 1 : c->unit;
-  stic_event e = {c->event_time, kind, vertex, surface_index,
-                  (double)where.x * c->unit, (double)where.y * c->unit, (double)length * scale};
+  stic_event e = {
+    c->event_time,         kind, vertex, surface_index, (double)where.x * c->unit, (double)where.y * c->unit,
+    (double)length * scale};
   c->events[c->event_count++] = e;
 }
 
 /* How much a gap's value may be rounding, at these coordinates. */
-static real gap_noise(const core *c) {
-  real extent = c->body.world_extent + r_abs(c->p.x) + r_abs(c->p.y) + r_abs(c->hand.h.x) + r_abs(c->hand.h.y);
+static real gap_noise(const core *c)
+{
+  real extent =
+    c->body.world_extent + r_abs(c->p.x) + r_abs(c->p.y) + r_abs(c->hand.h.x) + r_abs(c->hand.h.y);
   return 2 * REAL_EPSILON * (extent + 2 * c->body.size);
 }
 
-static void relax(core *c, hand target, double t) {
+static void relax(core *c, hand target, double t)
+{
   c->hand = target;
   c->event_time = t;
   c->opened_any = false;
@@ -30,7 +36,8 @@ static void relax(core *c, hand target, double t) {
   c->report->relaxations++;
   int stage = 0;
   for (; stage < STAGES_MAX; stage++) {
-    if (hold(c)) continue;
+    if (hold(c))
+      continue;
     forget_opened_that_left(c);
     bool after_slide = c->slid_to_zero;
     c->slid_to_zero = false;
@@ -45,8 +52,10 @@ static void relax(core *c, hand target, double t) {
       break;
     }
   }
-  if (stage == STAGES_MAX) c->report->flags |= STIC_FLAG_LIMIT;
-  if (stage + 1 > c->report->stages_worst) c->report->stages_worst = stage + 1;
+  if (stage == STAGES_MAX)
+    c->report->flags |= STIC_FLAG_LIMIT;
+  if (stage + 1 > c->report->stages_worst)
+    c->report->stages_worst = stage + 1;
   forget_opened_that_left(c);
   if (c->longest_slide > 0) {
     c->report->flags |= STIC_FLAG_SLIPPED;

@@ -2,26 +2,32 @@
 #include "statics.h"
 
 /* Section 3: which of the contact states this set is. */
-static stic_state contact_state(const core *c) {
+static stic_state contact_state(const core *c)
+{
   int n = c->contact_count;
-  if (n == 0) return STIC_FREE;
-  if (n == 1) return STIC_VERTEX;
+  if (n == 0)
+    return STIC_FREE;
+  if (n == 1)
+    return STIC_VERTEX;
   if (n == 2) {
     const contact *a = &c->contacts[0], *b = &c->contacts[1];
-    if (a->vertex == b->vertex) return STIC_CORNER;
+    if (a->vertex == b->vertex)
+      return STIC_CORNER;
     return a->surface == b->surface ? STIC_EDGE : STIC_TWO_VERTEX;
   }
   return STIC_MULTI;
 }
 
 /* Indices of the contacts by vertex, then surface. */
-static void sort_contacts(const core *c, int *order) {
+static void sort_contacts(const core *c, int *order)
+{
   for (int i = 0; i < c->contact_count; i++) {
     int at = i;
     const contact *k = &c->contacts[i];
     for (; at > 0; at--) {
       const contact *before = &c->contacts[order[at - 1]];
-      if (before->vertex < k->vertex || (before->vertex == k->vertex && before->surface < k->surface)) break;
+      if (before->vertex < k->vertex || (before->vertex == k->vertex && before->surface < k->surface))
+        break;
       order[at] = order[at - 1];
     }
     order[at] = i;
@@ -29,7 +35,8 @@ static void sort_contacts(const core *c, int *order) {
 }
 
 /* Of eqs (1) and (2), relative to the largest term. */
-static double balance_residual(const core *c, const vec *forces) {
+static double balance_residual(const core *c, const vec *forces)
+{
   vec about = c->contact_count ? c->contacts[0].place : holding_point(c);
   wrench load = load_about(c, about);
   vec sum = load.f;
@@ -41,12 +48,15 @@ static double balance_residual(const core *c, const vec *forces) {
     moment += v_cross(v_sub(c->contacts[i].place, about), forces[i]);
     largest = r_max(largest, v_length(forces[i]));
   }
-  if (largest < c->body.size) largest = c->body.size; /* small loads: to k_p size */
-  if (c->contact_count == 0 && c->body.kappa == 0) moment = 0;
+  if (largest < c->body.size)
+    largest = c->body.size; /* small loads: to k_p size */
+  if (c->contact_count == 0 && c->body.kappa == 0)
+    moment = 0;
   return (double)(r_max(v_length(sum), r_abs(moment) / c->body.size) / largest);
 }
 
-static void core_result(void *memory, stic_hand h, bool held, stic_result *r) {
+static void core_result(void *memory, stic_hand h, bool held, stic_result *r)
+{
   core *c = memory;
   vec forces[CONTACTS_MAX];
   int order[CONTACTS_MAX];
@@ -60,9 +70,12 @@ static void core_result(void *memory, stic_hand h, bool held, stic_result *r) {
   r->force_x = (double)f.x * force_unit;
   r->force_y = (double)f.y * force_unit;
   r->moment = (double)spring_moment(c) * force_unit * c->unit;
-  for (int i = 0; i < c->contact_count; i++) forces[i] = v_make(0, 0);
-  if (held) least_norm_forces(c, forces);
-  if (held && is_wedged(c)) r->flags |= STIC_FLAG_WEDGED;
+  for (int i = 0; i < c->contact_count; i++)
+    forces[i] = v_make(0, 0);
+  if (held)
+    least_norm_forces(c, forces);
+  if (held && is_wedged(c))
+    r->flags |= STIC_FLAG_WEDGED;
   r->residual = held ? balance_residual(c, forces) : 0;
   r->contact_count = c->contact_count;
   sort_contacts(c, order);

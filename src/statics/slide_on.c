@@ -13,8 +13,8 @@ enum { GUARDS_MAX = 4 + STIC_VERTICES_MAX };
 /* How a stretch of sliding ended. */
 typedef enum slide_end {
   SLIDE_ON_TO_SAMPLE,
-  SLIDE_ON_STUCK,  /* the place would move back: no event */
-  SLIDE_ON_EVENT   /* a touch, N = 0 or a fold comes next */
+  SLIDE_ON_STUCK, /* the place would move back: no event */
+  SLIDE_ON_EVENT  /* a touch, N = 0 or a fold comes next */
 } slide_end;
 
 /* Sliding with one degree of freedom from the pose at s = 0 on; s runs from 0 to 1 over the rest of the
@@ -24,13 +24,13 @@ typedef struct sliding_branch {
   int contact_count;
   path paths[2];
   curve drives[2];
-  wave normals[2][2];          /* [hand][contact] */
-  real shifts[2];              /* of the place at the present angle: balance before turning */
+  wave normals[2][2]; /* [hand][contact] */
+  real shifts[2];     /* of the place at the present angle: balance before turning */
   bool single;
-  vec w;                       /* single: t + sigma mu n, the place is w . (h - r) */
+  vec w; /* single: t + sigma mu n, the place is w . (h - r) */
   real sigma;
   vec hand_travel;
-  int gap_count;               /* single: gaps to other surfaces that depend on the place as well */
+  int gap_count; /* single: gaps to other surfaces that depend on the place as well */
   pair gaps[STIC_VERTICES_MAX];
   wave gap_waves[STIC_VERTICES_MAX];
   real x_max;
@@ -38,56 +38,74 @@ typedef struct sliding_branch {
 
 typedef struct sliding_point {
   real s, x;
-  real stiffness;              /* -(d drive / dx), positive */
-  real pull;                   /* d drive / ds */
-  real guards[GUARDS_MAX];     /* all positive while the sliding goes on */
+  real stiffness;          /* -(d drive / dx), positive */
+  real pull;               /* d drive / ds */
+  real guards[GUARDS_MAX]; /* all positive while the sliding goes on */
 } sliding_point;
 
-static real mix(real a, real s, real b) { return a + s * (b - a); }
+static real mix(real a, real s, real b)
+{
+  return a + s * (b - a);
+}
 
-static curve curve_between(const curve *a, real s, const curve *b) {
+static curve curve_between(const curve *a, real s, const curve *b)
+{
   curve r = {mix(a->k0, s, b->k0), mix(a->k1, s, b->k1), mix(a->c1, s, b->c1),
              mix(a->s1, s, b->s1), mix(a->c2, s, b->c2), mix(a->s2, s, b->s2)};
   return r;
 }
 
-static real curve_rate(const curve *g, real x) {
+static real curve_rate(const curve *g, real x)
+{
   real c = r_cos(x), s = r_sin(x);
   return g->k1 - g->c1 * s + g->s1 * c + 2 * (g->s2 * (c * c - s * s) - g->c2 * (2 * s * c));
 }
 
-static int guard_count(const sliding_branch *b) { return b->contact_count + (b->single ? 1 + b->gap_count : 0); }
+static int guard_count(const sliding_branch *b)
+{
+  return b->contact_count + (b->single ? 1 + b->gap_count : 0);
+}
 
-static sliding_point sliding_at(sliding_branch *b, real s) {
+static sliding_point sliding_at(sliding_branch *b, real s)
+{
   core *c = b->c;
   sliding_point p = {.s = s};
   curve g = curve_between(&b->drives[0], s, &b->drives[1]);
-  if (curve_at(&g, 0) > 0) curve_first_zero(&g, b->x_max, &p.x, &c->report->iterations);
+  if (curve_at(&g, 0) > 0)
+    curve_first_zero(&g, b->x_max, &p.x, &c->report->iterations);
   p.stiffness = -curve_rate(&g, p.x);
   p.pull = curve_at(&b->drives[1], p.x) - curve_at(&b->drives[0], p.x);
   for (int k = 0; k < b->contact_count; k++)
-    p.guards[k] = mix(wave_at(&b->normals[0][k], p.x), s, wave_at(&b->normals[1][k], p.x)) + TOLERANCE * c->body.size;
-  if (!b->single) return p;
+    p.guards[k] =
+      mix(wave_at(&b->normals[0][k], p.x), s, wave_at(&b->normals[1][k], p.x)) + TOLERANCE * c->body.size;
+  if (!b->single)
+    return p;
   const path *f = &b->paths[0];
   real turn_rate = p.stiffness > 0 ? p.pull / p.stiffness : 0; /* of x */
   real place_rate = f->xi_s * r_cos(p.x) - f->xi_c * r_sin(p.x);
   p.guards[1] = b->sigma * (b->shifts[1] - b->shifts[0] + place_rate * turn_rate);
   for (int k = 0; k < b->gap_count; k++)
-    p.guards[2 + k] = wave_at(&b->gap_waves[k], p.x) +
-                      mix(b->shifts[0], s, b->shifts[1]) * v_dot(c->body.surfaces[b->gaps[k].surface].n, f->t);
+    p.guards[2 + k] = wave_at(&b->gap_waves[k], p.x) + mix(b->shifts[0], s, b->shifts[1]) *
+                                                         v_dot(c->body.surfaces[b->gaps[k].surface].n, f->t);
   return p;
 }
 
 /* Largest rates of the guards over a piece; false if a fold cannot be excluded. */
-static bool sliding_rates(const sliding_branch *b, const sliding_point *p, const sliding_point *q, real *rates) {
+static bool sliding_rates(const sliding_branch *b, const sliding_point *p, const sliding_point *q,
+                          real *rates)
+{
   const curve *g = b->drives;
-  real first = r_max(r_sqrt(g[0].c1 * g[0].c1 + g[0].s1 * g[0].s1), r_sqrt(g[1].c1 * g[1].c1 + g[1].s1 * g[1].s1));
-  real second = r_max(r_sqrt(g[0].c2 * g[0].c2 + g[0].s2 * g[0].s2), r_sqrt(g[1].c2 * g[1].c2 + g[1].s2 * g[1].s2));
-  real d1 = r_abs(g[1].c1 - g[0].c1) + r_abs(g[1].s1 - g[0].s1), d2 = r_abs(g[1].c2 - g[0].c2) + r_abs(g[1].s2 - g[0].s2);
+  real first =
+    r_max(r_sqrt(g[0].c1 * g[0].c1 + g[0].s1 * g[0].s1), r_sqrt(g[1].c1 * g[1].c1 + g[1].s1 * g[1].s1));
+  real second =
+    r_max(r_sqrt(g[0].c2 * g[0].c2 + g[0].s2 * g[0].s2), r_sqrt(g[1].c2 * g[1].c2 + g[1].s2 * g[1].s2));
+  real d1 = r_abs(g[1].c1 - g[0].c1) + r_abs(g[1].s1 - g[0].s1),
+       d2 = r_abs(g[1].c2 - g[0].c2) + r_abs(g[1].s2 - g[0].s2);
   real bend = first + 4 * second, cross = d1 + 2 * d2 + r_abs(g[1].k1 - g[0].k1);
   real ds = q->s - p->s, dx = r_abs(q->x - p->x);
   real least = (p->stiffness + q->stiffness - bend * dx - cross * ds) / 2;
-  if (!(least > 0)) return false;
+  if (!(least > 0))
+    return false;
   real pull = r_max(r_abs(p->pull), r_abs(q->pull)) + cross * dx;
   real turn_rate = pull / least, turn_bend = (bend * turn_rate + 2 * cross) * turn_rate / least;
   for (int k = 0; k < b->contact_count; k++) {
@@ -96,17 +114,20 @@ static bool sliding_rates(const sliding_branch *b, const sliding_point *p, const
     real change = r_abs(n1->k - n0->k) + r_abs(n1->c - n0->c) + r_abs(n1->s - n0->s);
     rates[k] = amplitude * turn_rate + change;
   }
-  if (!b->single) return true;
+  if (!b->single)
+    return true;
   const path *f = &b->paths[0];
   real xi = r_abs(f->xi_c) + r_abs(f->xi_s);
   rates[1] = xi * (turn_rate * turn_rate + turn_bend);
   for (int k = 0; k < b->gap_count; k++)
-    rates[2 + k] = (r_abs(b->gap_waves[k].c) + r_abs(b->gap_waves[k].s)) * turn_rate + r_abs(b->shifts[1] - b->shifts[0]);
+    rates[2 + k] =
+      (r_abs(b->gap_waves[k].c) + r_abs(b->gap_waves[k].s)) * turn_rate + r_abs(b->shifts[1] - b->shifts[0]);
   return true;
 }
 
 /* The last s up to which all guards are proven positive; *lost is the guard that ends it (-1: a fold). */
-static real last_sliding(sliding_branch *b, real s_end, int *lost) {
+static real last_sliding(sliding_branch *b, real s_end, int *lost)
+{
   enum { DEPTH_MAX = 64, PIECES = 4096 };
   sliding_point stack[DEPTH_MAX], p = sliding_at(b, 0);
   int depth = 0, count = guard_count(b);
@@ -118,7 +139,8 @@ static real last_sliding(sliding_branch *b, real s_end, int *lost) {
     bool quiet = sliding_rates(b, &p, &q, rates);
     int bad = quiet ? -2 : -1;
     for (int k = 0; k < count; k++) {
-      if (q.guards[k] < 0 && (p.guards[k] > 0 || k != 1 || !b->single)) bad = k;
+      if (q.guards[k] < 0 && (p.guards[k] > 0 || k != 1 || !b->single))
+        bad = k;
       /* A normal force may stay at zero (k_theta = 0, the vertex rolled along): no bound proves that. */
       bool grazes = k < b->contact_count && ds <= GRAZING_PIECE && p.guards[k] >= 0 && q.guards[k] >= 0;
       quiet = quiet && (grazes || p.guards[k] + q.guards[k] > rates[k] * ds);
@@ -138,12 +160,14 @@ static real last_sliding(sliding_branch *b, real s_end, int *lost) {
     p = q;
     depth--;
   }
-  if (depth == 0) return s_end;
+  if (depth == 0)
+    return s_end;
   *lost = -1;
   return p.s;
 }
 
-static void advance_contact(core *c, contact *k, vec place, real *slid) {
+static void advance_contact(core *c, contact *k, vec place, real *slid)
+{
   vec on_surface = v_mix(place, -gap_of(c, place, k->surface), c->body.surfaces[k->surface].n);
   *slid += v_length(v_sub(on_surface, k->place));
   k->place = on_surface;
@@ -152,7 +176,8 @@ static void advance_contact(core *c, contact *k, vec place, real *slid) {
 
 /* ---- one vertex ---- */
 
-static void single_branch(core *c, const hand *from, const hand *to, sliding_branch *b) {
+static void single_branch(core *c, const hand *from, const hand *to, sliding_branch *b)
+{
   contact *k = &c->contacts[0];
   const surface *s = &c->body.surfaces[k->surface];
   const hand *hands[2] = {from, to};
@@ -166,7 +191,8 @@ static void single_branch(core *c, const hand *from, const hand *to, sliding_bra
     b->shifts[i] = v_dot(force, s->t) + friction * v_dot(force, s->n);
     vec place = v_mix(k->place, b->shifts[i], s->t);
     vec arm = v_sub(holding_point(c), k->place);
-    if (i == 1) dir = r_sign(v_cross(arm, v_mix(force, -b->shifts[i], s->t)) + spring_moment(c));
+    if (i == 1)
+      dir = r_sign(v_cross(arm, v_mix(force, -b->shifts[i], s->t)) + spring_moment(c));
     b->paths[i] = path_sliding(c, k->vertex, place, s->t, s->n, friction, dir);
     b->drives[i] = b->paths[i].drive;
     b->normals[i][0] = path_force_along(&b->paths[i], v_neg(s->n));
@@ -174,18 +200,23 @@ static void single_branch(core *c, const hand *from, const hand *to, sliding_bra
 }
 
 /* Gaps that depend on the place too: those to surfaces that the sliding one is not parallel to. */
-static void single_gaps(core *c, sliding_branch *b) {
+static void single_gaps(core *c, sliding_branch *b)
+{
   path at_rest = b->paths[0];
   at_rest.origin = c->contacts[0].place;
-  real reach = r_abs(b->shifts[0]) + r_abs(b->shifts[1]) + b->x_max * (2 * c->body.radius + r_abs(at_rest.xi_c) + r_abs(at_rest.xi_s));
+  real reach = r_abs(b->shifts[0]) + r_abs(b->shifts[1]) +
+               b->x_max * (2 * c->body.radius + r_abs(at_rest.xi_c) + r_abs(at_rest.xi_s));
   near_update(c, reach);
   for (int i = 0; i < c->near.count; i++) {
     int s = c->near.surfaces[i];
-    if (v_dot(c->body.surfaces[s].n, at_rest.t) == 0) continue;
+    if (v_dot(c->body.surfaces[s].n, at_rest.t) == 0)
+      continue;
     for (int v = 0; v < c->body.vertex_count; v++) {
-      if (!(c->near.vertices[i] >> v & 1) || is_contact(c, v, s)) continue;
+      if (!(c->near.vertices[i] >> v & 1) || is_contact(c, v, s))
+        continue;
       wave gap = path_gap(c, &at_rest, v, s);
-      if (gap.k + gap.c > reach + c->noise || b->gap_count == STIC_VERTICES_MAX) continue;
+      if (gap.k + gap.c > reach + c->noise || b->gap_count == STIC_VERTICES_MAX)
+        continue;
       b->gaps[b->gap_count] = (pair){v, s};
       b->gap_waves[b->gap_count++] = gap;
     }
@@ -194,31 +225,39 @@ static void single_gaps(core *c, sliding_branch *b) {
 
 /* ---- two vertices on two surfaces ---- */
 
-static bool trammel_branch(core *c, const hand *from, const hand *to, sliding_branch *b) {
+static bool trammel_branch(core *c, const hand *from, const hand *to, sliding_branch *b)
+{
   const hand *hands[2] = {from, to};
   b->contact_count = 2;
   for (int i = 0; i < 2; i++) {
     c->hand = *hands[i];
     trammel m = trammel_path(c, 0, 1, c->sliding_sense);
     b->paths[i] = m.path;
-    if (!trammel_forces(c, &m, 0, 1, 0, &b->normals[i][0], &b->normals[i][1], &b->drives[i])) return false;
-    real reversal = r_min(wave_next_zero(&m.speed_first, 2 * R_PI), wave_next_zero(&m.speed_second, 2 * R_PI));
+    if (!trammel_forces(c, &m, 0, 1, 0, &b->normals[i][0], &b->normals[i][1], &b->drives[i]))
+      return false;
+    real reversal =
+      r_min(wave_next_zero(&m.speed_first, 2 * R_PI), wave_next_zero(&m.speed_second, 2 * R_PI));
     b->x_max = r_min(reversal, 2 * R_PI);
   }
   return true;
 }
 
 /* Slides along the turning branch as far as it goes; *part is how far along the rest of the path. */
-static slide_end slide_on_turning(core *c, const hand *from, const hand *to, real *part, real *slid) {
+static slide_end slide_on_turning(core *c, const hand *from, const hand *to, real *part, real *slid)
+{
   sliding_branch b = {.c = c, .x_max = 2 * R_PI};
   *part = 0;
-  if (c->contact_count == 1) single_branch(c, from, to, &b);
-  else if (!trammel_branch(c, from, to, &b)) return SLIDE_ON_EVENT;
+  if (c->contact_count == 1)
+    single_branch(c, from, to, &b);
+  else if (!trammel_branch(c, from, to, &b))
+    return SLIDE_ON_EVENT;
   bool moves = curve_at(&b.drives[1], 0) > 0;
-  if (!moves && !b.single) return SLIDE_ON_STUCK;
+  if (!moves && !b.single)
+    return SLIDE_ON_STUCK;
   real x = 0, s_end = 1;
   bool ends_early = false;
-  if (moves) ends_early = !curve_first_zero(&b.drives[1], b.x_max, &x, &c->report->iterations) && b.x_max < 2 * R_PI;
+  if (moves)
+    ends_early = !curve_first_zero(&b.drives[1], b.x_max, &x, &c->report->iterations) && b.x_max < 2 * R_PI;
   b.x_max = x;
   /* Touches that depend on the angle alone, and a reversal of one contact of a trammel. */
   touch t = {R_HUGE, 0, 0};
@@ -228,9 +267,11 @@ static slide_end slide_on_turning(core *c, const hand *from, const hand *to, rea
     near_update(c, x * 2 * c->body.radius);
     for (int i = 0; i < c->near.count; i++) {
       int s = c->near.surfaces[i];
-      if (v_dot(c->body.surfaces[s].n, fixed.t) != 0) continue;
+      if (v_dot(c->body.surfaces[s].n, fixed.t) != 0)
+        continue;
       for (int v = 0; v < c->body.vertex_count; v++) {
-        if (!(c->near.vertices[i] >> v & 1) || is_contact(c, v, s)) continue;
+        if (!(c->near.vertices[i] >> v & 1) || is_contact(c, v, s))
+          continue;
         wave gap = path_gap(c, &fixed, v, s);
         keep_earlier(&t, wave_first_down(&gap, c->noise, x), v, s);
       }
@@ -242,46 +283,59 @@ static slide_end slide_on_turning(core *c, const hand *from, const hand *to, rea
   if (x_stop < R_HUGE) {
     real before = curve_at(&b.drives[0], x_stop), after = curve_at(&b.drives[1], x_stop);
     real s = after > before ? r_max(0, r_min(1, -before / (after - before))) : 1;
-    if (sliding_at(&b, s).x >= x_stop - R(1e-9)) s_end = s; /* else the branch folds first */
-    else x_stop = R_HUGE;
+    if (sliding_at(&b, s).x >= x_stop - R(1e-9))
+      s_end = s; /* else the branch folds first */
+    else
+      x_stop = R_HUGE;
   }
   int lost;
   *part = last_sliding(&b, s_end, &lost);
   sliding_point p = sliding_at(&b, *part);
   path f = b.paths[0];
-  if (b.single) f.origin = v_mix(c->contacts[0].place, mix(b.shifts[0], *part, b.shifts[1]), f.t);
+  if (b.single)
+    f.origin = v_mix(c->contacts[0].place, mix(b.shifts[0], *part, b.shifts[1]), f.t);
   path_set_pose(c, &f, p.x);
   advance_contact(c, &c->contacts[0], path_place(&f, p.x), slid);
-  if (!b.single) advance_contact(c, &c->contacts[1], world_vertex(c, c->contacts[1].vertex), slid);
-  if (b.single && lost == 1) return SLIDE_ON_STUCK;
+  if (!b.single)
+    advance_contact(c, &c->contacts[1], world_vertex(c, c->contacts[1].vertex), slid);
+  if (b.single && lost == 1)
+    return SLIDE_ON_STUCK;
   return lost != -2 || x_stop < R_HUGE ? SLIDE_ON_EVENT : SLIDE_ON_TO_SAMPLE;
 }
 
 /* An edge, or the walls of a slot: everything is linear. */
-static slide_end slide_on_along(core *c, const hand *from, const hand *to, real *part, real *slid) {
+static slide_end slide_on_along(core *c, const hand *from, const hand *to, real *part, real *slid)
+{
   pair_normals start, end;
   real sense = c->sliding_sense;
   *part = 0;
   c->hand = *from;
-  if (!normals_along_walls(c, 0, 1, sense, &start)) return SLIDE_ON_EVENT;
+  if (!normals_along_walls(c, 0, 1, sense, &start))
+    return SLIDE_ON_EVENT;
   c->hand = *to;
-  if (!normals_along_walls(c, 0, 1, sense, &end) || end.drive_rate >= 0) return SLIDE_ON_EVENT;
+  if (!normals_along_walls(c, 0, 1, sense, &end) || end.drive_rate >= 0)
+    return SLIDE_ON_EVENT;
   real length = end.drive / -end.drive_rate;
-  if (length < 0) return SLIDE_ON_STUCK;
+  if (length < 0)
+    return SLIDE_ON_STUCK;
   real first = end.first + end.first_rate * length, second = end.second + end.second_rate * length;
   vec travel = v_scale(c->body.surfaces[c->contacts[0].surface].t, sense * length);
   touch t = first_touch_moving(c, travel, 0);
   real stop = r_min(1, t.at);
-  if (first < 0) stop = r_min(stop, start.first / (start.first - first));
-  if (second < 0) stop = r_min(stop, start.second / (start.second - second));
+  if (first < 0)
+    stop = r_min(stop, start.first / (start.first - first));
+  if (second < 0)
+    stop = r_min(stop, start.second / (start.second - second));
   *part = r_max(0, stop);
   travel = v_scale(travel, *part);
   c->p = v_add(c->p, travel);
-  for (int i = 0; i < 2; i++) advance_contact(c, &c->contacts[i], v_add(c->contacts[i].place, travel), slid);
+  for (int i = 0; i < 2; i++)
+    advance_contact(c, &c->contacts[i], v_add(c->contacts[i].place, travel), slid);
   return *part < 1 ? SLIDE_ON_EVENT : SLIDE_ON_TO_SAMPLE;
 }
 
-static slide_end slide_on(core *c, const hand *from, const hand *to, real *part) {
+static slide_end slide_on(core *c, const hand *from, const hand *to, real *part)
+{
   bool along = c->contact_count == 2 && are_parallel(c, 0, 1);
   real slid = 0;
   c->noise = gap_noise(c);
@@ -293,11 +347,14 @@ static slide_end slide_on(core *c, const hand *from, const hand *to, real *part)
 }
 
 /* After a RELAX whose last slide reached its balance: does the sliding go on without events? */
-static bool slides_on(const core *c) {
-  if (c->contact_count < 1 || c->contact_count > 2 || (c->contact_count == 2 && all_at_one_vertex(c))) return false;
+static bool slides_on(const core *c)
+{
+  if (c->contact_count < 1 || c->contact_count > 2 || (c->contact_count == 2 && all_at_one_vertex(c)))
+    return false;
   for (int i = 0; i < c->contact_count; i++) {
     const surface *s = &c->body.surfaces[c->contacts[i].surface];
-    if (s->mu_s > s->mu_d) return false;
+    if (s->mu_s > s->mu_d)
+      return false;
   }
   return true;
 }

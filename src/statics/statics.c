@@ -18,21 +18,27 @@
 #include "follow.c"
 #include "row.c"
 
-static hand hand_in(const core *c, stic_hand h) {
+static hand hand_in(const core *c, stic_hand h)
+{
   hand r = {v_make((real)(h.x / c->unit), (real)(h.y / c->unit)), (real)h.phi};
   return r;
 }
 
-static size_t core_memory_size(void) { return sizeof(core); }
+static size_t core_memory_size(void)
+{
+  return sizeof(core);
+}
 
 /* A power of two not below the size: scaling by it is exact. */
-static double length_unit(double size) {
+static double length_unit(double size)
+{
   int exponent;
   frexp(size, &exponent);
   return ldexp(1, exponent);
 }
 
-static void init_surfaces(body *b, const stic_scene *scene, double unit) {
+static void init_surfaces(body *b, const stic_scene *scene, double unit)
+{
   b->surface_count = scene->surface_count;
   for (int i = 0; i < b->surface_count; i++) {
     const stic_surface *from = &scene->surfaces[i];
@@ -48,8 +54,9 @@ static void init_surfaces(body *b, const stic_scene *scene, double unit) {
   }
 }
 
-static void core_init(void *memory, const stic_scene *scene, const stic_settings *settings, stic_collider *collider,
-                      stic_event *events, int event_capacity) {
+static void core_init(void *memory, const stic_scene *scene, const stic_settings *settings,
+                      stic_collider *collider, stic_event *events, int event_capacity)
+{
   core *c = memory;
   memset(c, 0, sizeof *c);
   double size = stic_scene_size(scene);
@@ -81,14 +88,16 @@ static void core_init(void *memory, const stic_scene *scene, const stic_settings
   c->event_count = 0;
 }
 
-static void core_take(void *memory, double body_x, double body_y) {
+static void core_take(void *memory, double body_x, double body_y)
+{
   core *c = memory;
   c->b = v_make((real)(body_x / c->unit), (real)(body_y / c->unit));
   c->window_open = false;
   c->sliding = false;
 }
 
-static void core_relax(void *memory, stic_hand h, double t, stic_core_report *report) {
+static void core_relax(void *memory, stic_hand h, double t, stic_core_report *report)
+{
   core *c = memory;
   c->report = report;
   c->sliding = false;
@@ -97,41 +106,51 @@ static void core_relax(void *memory, stic_hand h, double t, stic_core_report *re
 }
 
 static void core_follow(void *memory, stic_hand from, stic_hand to, double t_from, double t_to,
-                        stic_core_report *report) {
+                        stic_core_report *report)
+{
   core *c = memory;
   c->report = report;
   hand a = hand_in(c, from), b = hand_in(c, to);
   switch (c->settings.level) {
-    case STIC_LEVEL_FRAME: relax(c, b, t_to); break;
-    case STIC_LEVEL_SUBSTEP: follow_substeps(c, a, b, t_from, t_to); break;
-    case STIC_LEVEL_EVENT: follow_event(c, a, b, t_from, t_to); break;
+  case STIC_LEVEL_FRAME: relax(c, b, t_to); break;
+  case STIC_LEVEL_SUBSTEP: follow_substeps(c, a, b, t_from, t_to); break;
+  case STIC_LEVEL_EVENT: follow_event(c, a, b, t_from, t_to); break;
   }
 }
 
-static void core_pose(const void *memory, double *x, double *y, double *theta) {
+static void core_pose(const void *memory, double *x, double *y, double *theta)
+{
   const core *c = memory;
   *x = (double)c->p.x * c->unit;
   *y = (double)c->p.y * c->unit;
   *theta = (double)c->theta;
 }
 
-static int core_event_count(const void *memory) { return ((const core *)memory)->event_count; }
-static void core_clear_events(void *memory) { ((core *)memory)->event_count = 0; }
+static int core_event_count(const void *memory)
+{
+  return ((const core *)memory)->event_count;
+}
+static void core_clear_events(void *memory)
+{
+  ((core *)memory)->event_count = 0;
+}
 
-static void core_add_event(void *memory, stic_event event) {
+static void core_add_event(void *memory, stic_event event)
+{
   core *c = memory;
-  if (c->event_count < c->event_capacity) c->events[c->event_count++] = event;
+  if (c->event_count < c->event_capacity)
+    c->events[c->event_count++] = event;
 }
 
 const stic_core STIC_CORE = {
-    .memory_size = core_memory_size,
-    .init = core_init,
-    .take = core_take,
-    .relax = core_relax,
-    .follow = core_follow,
-    .result = core_result,
-    .pose = core_pose,
-    .event_count = core_event_count,
-    .clear_events = core_clear_events,
-    .add_event = core_add_event,
+  .memory_size = core_memory_size,
+  .init = core_init,
+  .take = core_take,
+  .relax = core_relax,
+  .follow = core_follow,
+  .result = core_result,
+  .pose = core_pose,
+  .event_count = core_event_count,
+  .clear_events = core_clear_events,
+  .add_event = core_add_event,
 };

@@ -25,7 +25,7 @@ enum {
 #define MOMENT_ZERO r_max(R(1e-14), 4 * REAL_EPSILON)
 
 typedef struct surface {
-  vec point, n, t;      /* a point on it, outward normal, tangent (n turned by -90 degrees) */
+  vec point, n, t; /* a point on it, outward normal, tangent (n turned by -90 degrees) */
   real mu_s, mu_d;
 } surface;
 
@@ -42,12 +42,12 @@ typedef struct pair {
 /* Object and surfaces: what does not change during a run. */
 typedef struct body {
   int vertex_count, surface_count;
-  vec vertices[STIC_VERTICES_MAX];       /* body coordinates */
-  real size;                             /* largest distance between two vertices */
-  real kappa;                            /* k_theta / k_p */
-  real radius;                           /* farthest vertex from the body's origin */
+  vec vertices[STIC_VERTICES_MAX]; /* body coordinates */
+  real size;                       /* largest distance between two vertices */
+  real kappa;                      /* k_theta / k_p */
+  real radius;                     /* farthest vertex from the body's origin */
   surface surfaces[STIC_SURFACES_MAX];
-  real world_extent;                     /* largest coordinate of surface points: sets rounding noise */
+  real world_extent; /* largest coordinate of surface points: sets rounding noise */
 } body;
 
 /* Hand [5]: position and target angle. */
@@ -63,60 +63,65 @@ typedef struct near_list {
   real theta, reach;
   int count;
   int surfaces[STIC_SURFACES_MAX];
-  uint64_t vertices[STIC_SURFACES_MAX];  /* mask per listed surface */
+  uint64_t vertices[STIC_SURFACES_MAX]; /* mask per listed surface */
 } near_list;
 
 /* Contact forces as an optimisation over the cones (cone.c); kept while the contacts stay. */
-enum { BOUND_LOW = -1, BOUND_NONE = 0, BOUND_HIGH = 1, BOUND_ZERO = 2 }; /* T = -mu N, inside, T = mu N, N = T = 0 */
+enum {
+  BOUND_LOW = -1,
+  BOUND_NONE = 0,
+  BOUND_HIGH = 1,
+  BOUND_ZERO = 2
+}; /* T = -mu N, inside, T = mu N, N = T = 0 */
 
 typedef struct balance {
-  bool known;              /* the wrenches below are those of the contacts */
+  bool known; /* the wrenches below are those of the contacts */
   int count;
   real wrench_n[CONTACTS_MAX][3], wrench_t[CONTACTS_MAX][3], mu[CONTACTS_MAX];
   real edge_length[CONTACTS_MAX]; /* sqrt(1 + mu^2) */
-  bool bounds_known;       /* bounds and inverse are those of the last least-norm forces */
+  bool bounds_known;              /* bounds and inverse are those of the last least-norm forces */
   int bound[CONTACTS_MAX];
   real inverse[3][3];
   real last_target[3], last_n[CONTACTS_MAX], last_t[CONTACTS_MAX], last_y[3];
-  bool last_do;            /* the bounds give forces inside the cones for last_target */
+  bool last_do; /* the bounds give forces inside the cones for last_target */
   bool wedge_known, wedged;
 } balance;
 
 typedef struct core {
   body body;
   stic_settings settings;
-  double unit;             /* m per scaled length, a power of two */
-  double force_unit;       /* N per scaled force: k_p unit */
+  double unit;       /* m per scaled length, a power of two */
+  double force_unit; /* N per scaled force: k_p unit */
   stic_collider *collider;
   near_list near;
-  double *gaps_out;        /* scratch of the detector */
+  double *gaps_out; /* scratch of the detector */
 
   /* state */
-  vec p;                   /* body origin */
+  vec p; /* body origin */
   real theta;
-  vec rot;                 /* (cos theta, sin theta) */
-  vec b;                   /* holding point, body coordinates [2] */
+  vec rot;                        /* (cos theta, sin theta) */
+  vec b;                          /* holding point, body coordinates [2] */
   contact contacts[CONTACTS_MAX]; /* in the order in which they touched */
   int contact_count;
-  pair opened[PAIRS_MAX];  /* opened and not left yet: no new touch until they have */
+  pair opened[PAIRS_MAX]; /* opened and not left yet: no new touch until they have */
   int opened_count;
   balance balance;
-  bool window_open;        /* the last judgement was an event: the next comes h_min further */
-  bool sliding;            /* mu_s = mu_d: the contacts slide on without events, and ... */
-  real sliding_sense;      /* ... in this sense: along t for one contact or an edge, of theta for a trammel */
+  bool window_open;   /* the last judgement was an event: the next comes h_min further */
+  bool sliding;       /* mu_s = mu_d: the contacts slide on without events, and ... */
+  real sliding_sense; /* ... in this sense: along t for one contact or an edge, of theta for a trammel */
 
   /* during one RELAX */
   hand hand;
   double event_time;
-  bool opened_any;         /* a contact has opened in this RELAX */
-  bool turn_done;          /* the last slide reached the zero of its moment: no turn right after it */
-  bool happened;           /* touch, opening, slip: an event */
+  bool opened_any; /* a contact has opened in this RELAX */
+  bool turn_done;  /* the last slide reached the zero of its moment: no turn right after it */
+  bool happened;   /* touch, opening, slip: an event */
   real longest_slide;
-  real longest_slide_on;   /* slid without events since the last sample */
-  int flow_steps;          /* spent on the viscous flow: bounded per RELAX */
-  bool slid_to_zero;       /* the last action was a slide that reached its balance */
-  real slide_sense;        /* ... in this sense (see sliding_sense) */
-  real noise;              /* rounding of a gap at these coordinates */
+  real longest_slide_on; /* slid without events since the last sample */
+  int flow_steps;        /* spent on the viscous flow: bounded per RELAX */
+  bool slid_to_zero;     /* the last action was a slide that reached its balance */
+  real slide_sense;      /* ... in this sense (see sliding_sense) */
+  real noise;            /* rounding of a gap at these coordinates */
 
   stic_core_report *report;
   stic_event *events;
@@ -130,10 +135,10 @@ static vec rotate(vec rot, vec v);
 static vec world_vertex(const core *c, int vertex);
 static vec holding_point(const core *c);
 static void set_angle(core *c, real theta);
-static vec spring_force(const core *c);                 /* at the holding point, eq (3) */
-static real spring_moment(const core *c);               /* eq (4) */
+static vec spring_force(const core *c);   /* at the holding point, eq (3) */
+static real spring_moment(const core *c); /* eq (4) */
 static real spring_moment_about(const core *c, vec point);
-static real gap_of(const core *c, vec point, int s);    /* signed distance from surface s, > 0 free */
+static real gap_of(const core *c, vec point, int s); /* signed distance from surface s, > 0 free */
 
 /* ---- curve.c: functions of one angle, their first crossing and first zero ---- */
 
@@ -157,7 +162,7 @@ static real drift_first_down(wave w, real turn, real drift, real noise, int *ite
 
 /* ---- touch.c: which vertex reaches which surface first [5] ---- */
 typedef struct touch {
-  real at;                 /* R_HUGE: none */
+  real at; /* R_HUGE: none */
   int vertex, surface;
 } touch;
 
@@ -172,14 +177,14 @@ static touch first_touch_moving(core *c, vec travel, real turn);
 
 /* ---- path.c: one degree of freedom, the pose follows from the angle [5.1, 5.3] ---- */
 typedef struct path {
-  int vertex;              /* reference vertex */
-  real dir;                /* sense of the turn; x >= 0 below is the angle turned */
-  vec origin;              /* its place at x = 0 */
-  vec t;                   /* it moves along this ... */
-  real xi_c, xi_s;         /* ... by xi = xi_c (cos x - 1) + xi_s sin x */
-  vec a, a_turn;           /* holding point from the reference vertex, and dir * perp(a) */
-  wave force_x, force_y;   /* the spring's force */
-  curve drive;             /* dir * unbalanced moment: the turn goes on while it is positive */
+  int vertex;            /* reference vertex */
+  real dir;              /* sense of the turn; x >= 0 below is the angle turned */
+  vec origin;            /* its place at x = 0 */
+  vec t;                 /* it moves along this ... */
+  real xi_c, xi_s;       /* ... by xi = xi_c (cos x - 1) + xi_s sin x */
+  vec a, a_turn;         /* holding point from the reference vertex, and dir * perp(a) */
+  wave force_x, force_y; /* the spring's force */
+  curve drive;           /* dir * unbalanced moment: the turn goes on while it is positive */
 } path;
 
 static path path_pinned(const core *c, int vertex, vec place, real dir);

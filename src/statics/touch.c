@@ -1,29 +1,36 @@
 /* Which vertex reaches which surface first [5, first paragraph], and the list of contacts. */
 #include "statics.h"
 
-static bool is_contact(const core *c, int vertex, int on) {
+static bool is_contact(const core *c, int vertex, int on)
+{
   for (int i = 0; i < c->contact_count; i++)
-    if (c->contacts[i].vertex == vertex && c->contacts[i].surface == on) return true;
+    if (c->contacts[i].vertex == vertex && c->contacts[i].surface == on)
+      return true;
   return false;
 }
 
-static bool is_opened(const core *c, int vertex, int on) {
+static bool is_opened(const core *c, int vertex, int on)
+{
   for (int i = 0; i < c->opened_count; i++)
-    if (c->opened[i].vertex == vertex && c->opened[i].surface == on) return true;
+    if (c->opened[i].vertex == vertex && c->opened[i].surface == on)
+      return true;
   return false;
 }
 
-static void forget_opened_that_left(core *c) {
+static void forget_opened_that_left(core *c)
+{
   int kept = 0;
   for (int i = 0; i < c->opened_count; i++) {
     pair o = c->opened[i];
-    if (gap_of(c, world_vertex(c, o.vertex), o.surface) <= TOLERANCE * c->body.size + c->noise) c->opened[kept++] = o;
+    if (gap_of(c, world_vertex(c, o.vertex), o.surface) <= TOLERANCE * c->body.size + c->noise)
+      c->opened[kept++] = o;
   }
   c->opened_count = kept;
 }
 
 /* The place is the vertex's own, put onto the surface: no rounding of a touch goes into later gaps. */
-static void add_contact(core *c, int vertex, int on) {
+static void add_contact(core *c, int vertex, int on)
+{
   if (c->contact_count == CONTACTS_MAX) {
     c->report->flags |= STIC_FLAG_LIMIT;
     return;
@@ -32,7 +39,8 @@ static void add_contact(core *c, int vertex, int on) {
   vec place = v_mix(at, -gap_of(c, at, on), c->body.surfaces[on].n);
   /* A vertex that already rests on another surface has one place. */
   for (int i = 0; i < c->contact_count; i++)
-    if (c->contacts[i].vertex == vertex) place = c->contacts[i].place;
+    if (c->contacts[i].vertex == vertex)
+      place = c->contacts[i].place;
   contact k = {vertex, on, place};
   c->contacts[c->contact_count++] = k;
   c->balance.known = false;
@@ -40,9 +48,11 @@ static void add_contact(core *c, int vertex, int on) {
   record(c, STIC_EVENT_TOUCH, vertex, on, place, 0);
 }
 
-static void remove_contact(core *c, int index) {
+static void remove_contact(core *c, int index)
+{
   contact k = c->contacts[index];
-  for (int i = index; i + 1 < c->contact_count; i++) c->contacts[i] = c->contacts[i + 1];
+  for (int i = index; i + 1 < c->contact_count; i++)
+    c->contacts[i] = c->contacts[i + 1];
   c->contact_count--;
   c->balance.known = false;
   if (!is_opened(c, k.vertex, k.surface) && c->opened_count < PAIRS_MAX) {
@@ -55,13 +65,15 @@ static void remove_contact(core *c, int index) {
 }
 
 /* Asks ODE again when the object can leave the region for which the last answer holds. */
-static void near_update(core *c, real travel) {
+static void near_update(core *c, real travel)
+{
   near_list *near = &c->near;
   real slack = 8 * c->noise + TOLERANCE * c->body.size;
   if (near->valid) {
     vec moved = v_sub(c->p, near->p);
     real turned = r_min(r_abs(c->theta - near->theta), 2);
-    if (v_length(moved) + turned * c->body.radius + travel + slack <= near->reach) return;
+    if (v_length(moved) + turned * c->body.radius + travel + slack <= near->reach)
+      return;
   }
   near->reach = R(1.5) * travel + c->body.size / 4 + slack;
   near->p = c->p;
@@ -71,16 +83,19 @@ static void near_update(core *c, real travel) {
   for (int s = 0; s < c->body.surface_count; s++)
     c->gap_scratch[s] = (double)(gap_of(c, c->p, s)) * c->unit;
   double widened = (double)near->reach * c->unit * (1 + 64 * (double)REAL_EPSILON);
-  stic_collide_near(c->collider, c->gap_scratch, (double)c->rot.x, (double)c->rot.y, widened, c->mask_scratch);
+  stic_collide_near(c->collider, c->gap_scratch, (double)c->rot.x, (double)c->rot.y, widened,
+                    c->mask_scratch);
   for (int s = 0; s < c->body.surface_count; s++) {
-    if (!c->mask_scratch[s]) continue;
+    if (!c->mask_scratch[s])
+      continue;
     near->surfaces[near->count] = s;
     near->vertices[near->count++] = c->mask_scratch[s];
   }
 }
 
 /* Keeps the earlier touch; of two at once the lower vertex, then the lower surface. */
-static void keep_earlier(touch *best, real at, int vertex, int on) {
+static void keep_earlier(touch *best, real at, int vertex, int on)
+{
   bool tie = at == best->at && at < R_HUGE &&
              (vertex < best->vertex || (vertex == best->vertex && on < best->surface));
   if (at < best->at || tie) {
@@ -89,20 +104,24 @@ static void keep_earlier(touch *best, real at, int vertex, int on) {
   }
 }
 
-static void add_touching(core *c) {
+static void add_touching(core *c)
+{
   near_update(c, 0);
   for (int i = 0; i < c->near.count; i++) {
     int s = c->near.surfaces[i];
     for (int v = 0; v < c->body.vertex_count; v++) {
-      if (!(c->near.vertices[i] >> v & 1) || is_contact(c, v, s) || is_opened(c, v, s)) continue;
-      if (gap_of(c, world_vertex(c, v), s) <= TOLERANCE * c->body.size) add_contact(c, v, s);
+      if (!(c->near.vertices[i] >> v & 1) || is_contact(c, v, s) || is_opened(c, v, s))
+        continue;
+      if (gap_of(c, world_vertex(c, v), s) <= TOLERANCE * c->body.size)
+        add_contact(c, v, s);
     }
   }
 }
 
 /* The object goes straight by `travel` (of its holding point) and turns by `turn` about it, both evenly:
  * the first touch as a fraction of the way. */
-static touch first_touch_moving(core *c, vec travel, real turn) {
+static touch first_touch_moving(core *c, vec travel, real turn)
+{
   touch best = {R_HUGE, 0, 0};
   real radius = c->body.radius + v_length(c->b);
   near_update(c, v_length(travel) + r_min(r_abs(turn), 2) * radius);
@@ -111,12 +130,15 @@ static touch first_touch_moving(core *c, vec travel, real turn) {
     int s = c->near.surfaces[i];
     vec n = c->body.surfaces[s].n;
     real base = gap_of(c, g, s), drift = v_dot(n, travel);
-    if (r_min(base, base + drift) > radius + c->noise) continue;
+    if (r_min(base, base + drift) > radius + c->noise)
+      continue;
     for (int v = 0; v < c->body.vertex_count; v++) {
-      if (!(c->near.vertices[i] >> v & 1) || is_contact(c, v, s)) continue;
+      if (!(c->near.vertices[i] >> v & 1) || is_contact(c, v, s))
+        continue;
       vec e = rotate(c->rot, v_sub(c->body.vertices[v], c->b));
       real w_c = v_dot(n, e);
-      if (turn == 0 && r_min(base, base + drift) + w_c > c->noise) continue;
+      if (turn == 0 && r_min(base, base + drift) + w_c > c->noise)
+        continue;
       wave w = {base, w_c, v_dot(n, v_perp(e))};
       keep_earlier(&best, drift_first_down(w, turn, drift, c->noise, &c->report->iterations), v, s);
     }

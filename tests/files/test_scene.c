@@ -88,7 +88,7 @@ static const wrong cases[] = {
   {"size: [0.16, 0.08, 0.10]", "polygon:\n  - [-0.1, -0.1]\n  - [0, -0.1]\n  - [0.1, -0.1]\n  - [0, 0.1]", 6, "not convex"},
   {"size: [0.16, 0.08, 0.10]", "polygon:\n  - [-0.1, -0.1]\n  - [-0.1, -0.1]\n  - [0.1, -0.1]\n  - [0, 0.1]", 6, "vertex 1 is the same as vertex 0"},
   {"size: [0.16, 0.08, 0.10]", "polygon: [[0, 1], [-0.59, -0.81], [0.95, 0.31], [-0.95, 0.31], [0.59, -0.81]]", 4, "not convex"},
-  {"size: [0.16, 0.08, 0.10]", "polygon: [[0, 0], [1e-9, 0], [0, 1e-9]]", 4, "large; expected"},
+  {"size: [0.16, 0.08, 0.10]", "polygon: [[0, 0], [1e-10, 0], [0, 1e-10]]", 4, "large; expected"},
   /* surfaces */
   {"surfaces:\n", "surfaces: []\nx:\n", 8, "expected a list of 1 to 256 surfaces"},
   {"surfaces:\n", "surfaces: {}\nx:\n", 8, "expected a list of 1 to 256 surfaces"},
