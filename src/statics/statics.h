@@ -94,7 +94,6 @@ typedef struct core {
   double force_unit; /* N per scaled force: k_p unit */
   stic_collider *collider;
   near_list near;
-  double *gaps_out; /* scratch of the detector */
 
   /* state */
   vec p; /* body origin */
