@@ -1,0 +1,293 @@
+#include "png_writer.h"
+
+#include <errno.h>
+#include <png.h>
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "error.h"
+
+/* Pictures that wait per worker: enough to even out, few enough to bound memory. */
+#define QUEUE_PER_WORKER 2
+
+char *stic_png_sequence_path(const char *folder, int64_t index)
+{
+  size_t room = strlen(folder) + 40;
+  char *path = malloc(room);
+
+  if (path)
+    snprintf(path, room, "%s/frame_%06lld.png", folder, (long long)index);
+  return path;
+}
+
+/* ---- one file ------------------------------------------------------------------------------ */
+
+static void on_png_error(png_structp png, png_const_charp message)
+{
+  (void)message; /* the cause is in errno, or in memory */
+  longjmp(png_jmpbuf(png), 1);
+}
+
+static void on_png_warning(png_structp png, png_const_charp message)
+{
+  (void)png;
+  (void)message;
+}
+
+/* False on failure. Nothing that setjmp() could lose is changed here. */
+static bool encode_rows(png_structp png, png_infop info, FILE *file, const stic_image *image)
+{
+  if (setjmp(png_jmpbuf(png)))
+    return false;
+  png_init_io(png, file);
+  png_set_IHDR(png, info, (png_uint_32)image->width, (png_uint_32)image->height, 8, PNG_COLOR_TYPE_RGB,
+               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
+  png_set_compression_level(png, 1);
+  png_set_compression_buffer_size(png, 65536);
+  png_write_info(png, info);
+  png_set_filler(png, 0, PNG_FILLER_AFTER);
+  for (int y = 0; y < image->height; y++)
+    png_write_row(png, image->pixels + (size_t)y * (size_t)image->width * 4);
+  png_write_end(png, info);
+  return true;
+}
+
+static bool encode(FILE *file, const stic_image *image)
+{
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, on_png_error, on_png_warning);
+  png_infop info = png ? png_create_info_struct(png) : NULL;
+  bool done = info && encode_rows(png, info, file, image);
+
+  png_destroy_write_struct(&png, &info);
+  return done;
+}
+
+/* 0 or an errno; what failed is removed again if it is a file of ours. */
+static int write_file(const char *path, const stic_image *image, bool ours)
+{
+  FILE *file = fopen(path, "wb");
+  int problem = 0;
+
+  if (!file)
+    return errno;
+  errno = 0;
+  if (!encode(file, image))
+    problem = errno ? errno : ENOMEM;
+  if (fclose(file) && !problem)
+    problem = errno;
+  if (problem && ours)
+    unlink(path);
+  return problem;
+}
+
+static stic_status refused(const char *path, int problem, stic_error *err)
+{
+  return stic_error_set(err, problem == ENOMEM ? STIC_NO_MEMORY : STIC_CANNOT_WRITE, path, 0,
+                        "cannot write: %s", strerror(problem));
+}
+
+stic_status stic_png_write(const char *path, const stic_image *image, stic_error *err)
+{
+  size_t room = strlen(path) + 32;
+  char *draft = malloc(room);
+  struct stat there;
+  int problem;
+
+  if (!draft)
+    return refused(path, ENOMEM, err);
+  /* A device or a pipe cannot be replaced. */
+  if (!stat(path, &there) && !S_ISREG(there.st_mode)) {
+    free(draft);
+    problem = write_file(path, image, false);
+    return problem ? refused(path, problem, err) : STIC_OK;
+  }
+  snprintf(draft, room, "%s.%ld.tmp", path, (long)getpid());
+  problem = write_file(draft, image, true);
+  if (!problem && rename(draft, path) != 0) {
+    problem = errno;
+    unlink(draft);
+  }
+  free(draft);
+  return problem ? refused(path, problem, err) : STIC_OK;
+}
+
+/* ---- sequence ------------------------------------------------------------------------------ */
+
+typedef struct slot {
+  int64_t index;
+  uint8_t *pixels; /* owned */
+} slot;
+
+struct stic_png_writer {
+  char *folder;
+  int width, height;
+  pthread_mutex_t lock; /* guards what follows */
+  pthread_cond_t changed;
+  slot *slots; /* ring */
+  int slot_count, first, waiting;
+  int busy; /* threads with a picture in hand */
+  bool ending;
+  stic_error failure; /* status STIC_OK: none */
+  int workers;        /* threads that run */
+  pthread_t threads[STIC_PNG_WORKERS_MAX];
+};
+
+static void write_slot(stic_png_writer *w, const slot *s, stic_error *err)
+{
+  stic_image image = {w->width, w->height, s->pixels};
+  char *path = stic_png_sequence_path(w->folder, s->index);
+  int problem = path ? write_file(path, &image, true) : ENOMEM;
+
+  err->status = STIC_OK;
+  if (problem)
+    refused(path ? path : w->folder, problem, err);
+  free(path);
+}
+
+/* Takes pictures off the queue until the end. The slot's pixels are swapped with the thread's own, so
+ * that the slot is free at once. */
+static void *work(void *writer)
+{
+  stic_png_writer *w = writer;
+  slot own = {0, malloc((size_t)w->width * (size_t)w->height * 4)};
+  stic_error err;
+
+  pthread_mutex_lock(&w->lock);
+  if (!own.pixels && !w->failure.status)
+    refused(w->folder, ENOMEM, &w->failure);
+  for (;;) {
+    slot *s = &w->slots[w->first], taken;
+
+    if (!w->waiting && w->ending)
+      break;
+    if (!w->waiting) {
+      pthread_cond_wait(&w->changed, &w->lock);
+      continue;
+    }
+    w->first = (w->first + 1) % w->slot_count;
+    w->waiting--;
+    if (!own.pixels || w->failure.status) {
+      pthread_cond_broadcast(&w->changed);
+      continue;
+    }
+    taken = *s;
+    s->pixels = own.pixels;
+    own = taken;
+    w->busy++;
+    pthread_cond_broadcast(&w->changed);
+    pthread_mutex_unlock(&w->lock);
+    write_slot(w, &own, &err);
+    pthread_mutex_lock(&w->lock);
+    w->busy--;
+    if (err.status && !w->failure.status)
+      w->failure = err;
+    pthread_cond_broadcast(&w->changed);
+  }
+  pthread_mutex_unlock(&w->lock);
+  free(own.pixels);
+  return NULL;
+}
+
+static bool make_slots(stic_png_writer *w, int workers)
+{
+  w->slot_count = workers * QUEUE_PER_WORKER;
+  w->slots = calloc((size_t)w->slot_count, sizeof *w->slots);
+  for (int i = 0; w->slots && i < w->slot_count; i++) {
+    w->slots[i].pixels = malloc((size_t)w->width * (size_t)w->height * 4);
+    if (!w->slots[i].pixels)
+      return false;
+  }
+  return w->slots != NULL;
+}
+
+stic_status stic_png_writer_create(const char *folder, int width, int height, int workers,
+                                   stic_png_writer **writer, stic_error *err)
+{
+  stic_png_writer *w = calloc(1, sizeof *w);
+
+  *writer = NULL;
+  if (!w)
+    return stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "no memory for writing pictures");
+  pthread_mutex_init(&w->lock, NULL);
+  pthread_cond_init(&w->changed, NULL);
+  w->width = width;
+  w->height = height;
+  w->folder = malloc(strlen(folder) + 1);
+  if (w->folder && make_slots(w, workers)) {
+    strcpy(w->folder, folder);
+    while (w->workers < workers && !pthread_create(&w->threads[w->workers], NULL, work, w))
+      w->workers++;
+  }
+  if (!w->workers) {
+    stic_png_writer_destroy(w);
+    return stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "no memory or threads for writing pictures");
+  }
+  *writer = w;
+  return STIC_OK;
+}
+
+/* With the lock held. */
+static stic_status report(const stic_png_writer *w, stic_error *err)
+{
+  if (w->failure.status && err)
+    *err = w->failure;
+  return w->failure.status;
+}
+
+stic_status stic_png_writer_add(stic_png_writer *w, int64_t index, const stic_image *image, stic_error *err)
+{
+  stic_status status;
+
+  pthread_mutex_lock(&w->lock);
+  while (w->waiting == w->slot_count && !w->failure.status)
+    pthread_cond_wait(&w->changed, &w->lock);
+  status = report(w, err);
+  if (!status) {
+    slot *s = &w->slots[(w->first + w->waiting) % w->slot_count];
+
+    s->index = index;
+    memcpy(s->pixels, image->pixels, (size_t)w->width * (size_t)w->height * 4);
+    w->waiting++;
+    pthread_cond_broadcast(&w->changed);
+  }
+  pthread_mutex_unlock(&w->lock);
+  return status;
+}
+
+stic_status stic_png_writer_finish(stic_png_writer *w, stic_error *err)
+{
+  stic_status status;
+
+  pthread_mutex_lock(&w->lock);
+  while (w->waiting || w->busy)
+    pthread_cond_wait(&w->changed, &w->lock);
+  status = report(w, err);
+  pthread_mutex_unlock(&w->lock);
+  return status;
+}
+
+void stic_png_writer_destroy(stic_png_writer *w)
+{
+  if (!w)
+    return;
+  pthread_mutex_lock(&w->lock);
+  w->ending = true;
+  w->waiting = 0;
+  pthread_cond_broadcast(&w->changed);
+  pthread_mutex_unlock(&w->lock);
+  for (int i = 0; i < w->workers; i++)
+    pthread_join(w->threads[i], NULL);
+  for (int i = 0; w->slots && i < w->slot_count; i++)
+    free(w->slots[i].pixels);
+  free(w->slots);
+  free(w->folder);
+  pthread_cond_destroy(&w->changed);
+  pthread_mutex_destroy(&w->lock);
+  free(w);
+}
