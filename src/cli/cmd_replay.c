@@ -1,11 +1,11 @@
 /* stiction replay: a trace through the solver, headless and as fast as it can. */
 #include "../error.h"
 #include "../io/trace_csv.h"
-#include "../number.h"
 #include "cli.h"
-#include "movie.h"
+#include "pictures.h"
 #include "session.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,17 +16,19 @@ static const stic_cli_usage usage = {
   "with 128 + its number. A bad line ends it with exit code 3 unless --lenient is given.\n",
   2, 2};
 
-/* Command-line values. */
-typedef struct picture_options {
-  char *folder; /* NULL: no pictures */
-  char *size;   /* NULL: the renderer's default */
-  int fps, force;
-} picture_options;
+/* Command-line values beside those of the session. */
+typedef struct replay_options {
+  char *folder, *video; /* NULL: no pictures of that kind */
+  stic_picture_options pictures;
+  int fps, force, hud_timing, lenient;
+} replay_options;
 
 typedef struct replay {
   stic_session session;
   stic_trace_reader *trace;
-  stic_movie *movie; /* NULL: none asked for */
+  stic_movie *movie;        /* NULL: none asked for, or it failed */
+  stic_error movie_error;   /* why it failed; the rest of the run goes on without pictures */
+  bool hud_timing;
   stic_error first_skipped; /* with --lenient */
 } replay;
 
@@ -40,6 +42,14 @@ static void on_problem(void *context, bool warning, const stic_error *problem)
     r->first_skipped = *problem;
 }
 
+/* Pictures that fail leave nothing and take nothing else with them. */
+static void movie_failed(replay *r, const stic_error *err)
+{
+  r->movie_error = *err;
+  stic_movie_close(r->movie);
+  r->movie = NULL;
+}
+
 /* Also after a failed write, which the commit tells and cleans up. A reader of standard output that
  * has left gets no message. */
 static int finish(replay *r, stic_error *err)
@@ -47,13 +57,13 @@ static int finish(replay *r, stic_error *err)
   bool pipe_closed;
 
   if (r->movie && stic_movie_finish(r->movie, err) != STIC_OK)
-    return stic_cli_fail(err);
+    movie_failed(r, err);
   if (stic_cli_signal() != 0)
     return STIC_EXIT_SIGNAL + stic_cli_signal();
   if (stic_session_commit(&r->session, "", &pipe_closed, err) != STIC_OK)
     return pipe_closed ? STIC_EXIT_SIGNAL + SIGPIPE : stic_cli_fail(err);
   if (r->movie && stic_movie_keep(r->movie, err) != STIC_OK)
-    return stic_cli_fail(err);
+    movie_failed(r, err);
   if (stic_trace_skipped(r->trace) > 0) {
     char text[800];
 
@@ -61,19 +71,31 @@ static int finish(replay *r, stic_error *err)
     stic_cli_say("%lld bad line%s passed over, the first: %s", (long long)stic_trace_skipped(r->trace),
                  stic_trace_skipped(r->trace) == 1 ? "" : "s", text);
   }
-  return STIC_OK;
+  return r->movie_error.status == STIC_OK ? STIC_OK : stic_cli_fail(&r->movie_error);
+}
+
+/* The clock's values, which the pictures of a replay only show on request. */
+static void show_timing(replay *r, int64_t frame_ns)
+{
+  char note[64];
+
+  snprintf(note, sizeof note, "computed in %.1f us", (double)frame_ns / 1e3);
+  stic_render_set_note(stic_movie_renderer(r->movie), note);
 }
 
 /* Returns the exit code; a negative one stands for "go on". */
 static int one_sample(replay *r, const stic_sample *sample, int64_t read_ns, stic_error *err)
 {
   stic_session *s = &r->session;
+  int64_t frame_ns;
 
   if (r->movie && stic_movie_before(r->movie, sample->t_ns, err) != STIC_OK)
-    return stic_cli_fail(err);
-  stic_session_step(s, sample, read_ns);
+    movie_failed(r, err);
+  frame_ns = stic_session_step(s, sample, read_ns);
   if (r->movie)
     stic_movie_observe(r->movie, &s->result);
+  if (r->movie && r->hud_timing)
+    show_timing(r, frame_ns);
   return stic_session_write_failed(s) ? finish(r, err) : -1;
 }
 
@@ -107,47 +129,60 @@ static void on_stage(void *user, stic_movie_stage stage, int64_t ns)
   stic_timing_add(user, stage == STIC_MOVIE_RENDER ? STIC_STAGE_RENDER : STIC_STAGE_ENCODE, ns);
 }
 
-static bool parse_size(const char *text, int *width, int *height)
-{
-  const char *x = strchr(text, 'x');
-  int64_t w, h;
-
-  if (!x || stic_number_parse_integer(text, (size_t)(x - text), 1, INT16_MAX, &w) != STIC_NUMBER_OK ||
-      stic_number_parse_integer(x + 1, strlen(x + 1), 1, INT16_MAX, &h) != STIC_NUMBER_OK)
-    return false;
-  *width = (int)w;
-  *height = (int)h;
-  return true;
-}
-
-static stic_status open_movie(replay *r, const picture_options *options, stic_error *err)
+static stic_status open_movie(replay *r, const replay_options *o, const char *trace, stic_error *err)
 {
   stic_movie_settings settings;
+  stic_extent extent;
+  stic_status status;
 
   stic_movie_settings_init(&settings);
-  settings.folder = options->folder;
-  settings.fps = options->fps;
-  settings.force = options->force != 0;
+  settings.folder = o->folder;
+  settings.video = o->video;
+  settings.fps = o->fps;
+  settings.force = o->force != 0;
   settings.timed = r->session.timing ? on_stage : NULL;
   settings.user = r->session.timing;
-  if (options->size && !parse_size(options->size, &settings.render.width, &settings.render.height))
-    return stic_error_set(err, STIC_USAGE, NULL, 0, "--size %.40s: expected WIDTHxHEIGHT in pixels",
-                          options->size);
-  return stic_movie_open(&settings, &r->session.scene, &r->movie, err);
+  settings.render.extent = &extent;
+  status = stic_pictures_apply(&o->pictures, &settings.render, err);
+  if (status == STIC_OK && o->hud_timing)
+    status = stic_session_time(&r->session, err);
+  if (status == STIC_OK)
+    status = stic_pictures_measure(&r->session.scene, &r->session.settings, trace, o->lenient != 0, &extent, err);
+  if (status == STIC_OK && strcmp(trace, "-") == 0)
+    settings.render.extent = NULL;
+  r->hud_timing = o->hud_timing != 0;
+  return status == STIC_OK ? stic_movie_open(&settings, &r->session.scene, &r->movie, err) : status;
+}
+
+/* A missing renderer or folder is told at once only if nothing else is wanted of the run. */
+static stic_status start_movie(replay *r, const replay_options *o, const stic_session_options *session,
+                               const char *trace, stic_error *err)
+{
+  stic_status status;
+
+  if (!o->folder && !o->video)
+    return STIC_OK;
+  status = open_movie(r, o, trace, err);
+  if (status != STIC_CANNOT_WRITE || !(session->log || session->events))
+    return status;
+  movie_failed(r, err);
+  return STIC_OK;
 }
 
 int stic_cmd_replay(int argc, const char **argv)
 {
-  stic_session_options options = {NULL, NULL, NULL, NULL, NULL, NULL};
-  picture_options pictures = {NULL, NULL, STIC_TARGET_HZ, 0};
-  int lenient = 0;
+  stic_session_options session = {NULL, NULL, NULL, NULL, NULL, NULL};
+  replay_options o = {.fps = STIC_TARGET_HZ};
   const struct poptOption table[] = {
-    STIC_SESSION_OPTIONS(&options),
-    {"lenient", '\0', POPT_ARG_NONE, &lenient, 0, "Pass over bad lines of the trace and count them", NULL},
-    {"frames", '\0', POPT_ARG_STRING, &pictures.folder, 0, "Write pictures DIR/frame_000000.png ...", "DIR"},
-    {"fps", '\0', POPT_ARG_INT, &pictures.fps, 0, "Pictures per second of the trace, 1 to 1000 (default 31)", "N"},
-    {"size", '\0', POPT_ARG_STRING, &pictures.size, 0, "Size of pictures in pixels (default 1280x720)", "WxH"},
-    {"force", '\0', POPT_ARG_NONE, &pictures.force, 0, "Remove older pictures from DIR", NULL},
+    STIC_SESSION_OPTIONS(&session),
+    {"lenient", '\0', POPT_ARG_NONE, &o.lenient, 0, "Pass over bad lines of the trace and count them", NULL},
+    {"frames", '\0', POPT_ARG_STRING, &o.folder, 0, "Write pictures DIR/frame_000000.png ...", "DIR"},
+    {"video", '\0', POPT_ARG_STRING, &o.video, 0, "Write a video: .mp4 (H.264), .mkv (lossless) or .webm (VP9)",
+     "FILE"},
+    {"fps", '\0', POPT_ARG_INT, &o.fps, 0, "Pictures per second of the trace, 1 to 1000 (default 31)", "N"},
+    {"force", '\0', POPT_ARG_NONE, &o.force, 0, "Remove older pictures from DIR", NULL},
+    STIC_PICTURE_OPTIONS(&o.pictures),
+    {"hud-timing", '\0', POPT_ARG_NONE, &o.hud_timing, 0, "Show in the pictures what each frame cost", NULL},
     POPT_TABLEEND
   };
   replay r = {.trace = NULL};
@@ -156,14 +191,14 @@ int stic_cmd_replay(int argc, const char **argv)
   int code = stic_cli_parse(&usage, table, argc, argv, &args);
 
   if (code < 0) {
-    const char *const outputs[] = {options.log, options.events, options.timing};
-    const stic_trace_options trace_options = {lenient != 0, on_problem, &r};
+    const char *const outputs[] = {session.log, session.events, session.timing, o.video};
+    const stic_trace_options trace_options = {o.lenient != 0, on_problem, &r};
 
     code = -1;
-    if (stic_cli_check_paths(args.positions, 2, outputs, 3, &err) != STIC_OK ||
-        stic_session_open(&r.session, &options, args.positions[0], "trace", args.positions[1], &err) != STIC_OK ||
+    if (stic_cli_check_paths(args.positions, 2, outputs, 4, &err) != STIC_OK ||
+        stic_session_open(&r.session, &session, args.positions[0], "trace", args.positions[1], &err) != STIC_OK ||
         stic_trace_open(args.positions[1], &trace_options, &r.trace, &err) != STIC_OK ||
-        (pictures.folder && open_movie(&r, &pictures, &err) != STIC_OK))
+        start_movie(&r, &o, &session, args.positions[1], &err) != STIC_OK)
       code = stic_cli_fail(&err);
     if (code < 0)
       code = replay_all(&r, &err);
@@ -174,8 +209,9 @@ int stic_cmd_replay(int argc, const char **argv)
     stic_session_close(&r.session);
   }
   stic_cli_args_free(&args);
-  stic_session_options_free(&options);
-  free(pictures.folder);
-  free(pictures.size);
+  stic_session_options_free(&session);
+  stic_picture_options_free(&o.pictures);
+  free(o.folder);
+  free(o.video);
   return code;
 }
