@@ -12,6 +12,36 @@ static wrench load_about(const core *c, vec point)
   return w;
 }
 
+/* What a balance of forces may be off: the model's 1e-12 k_p size, and the rounding of large loads and of
+ * coordinates far from the origin. */
+static real slack_of_load(const core *c, vec f, real turn)
+{
+  real turning = c->body.kappa * turn / c->body.size;
+  return TOLERANCE * c->body.size + 4 * c->noise +
+         16 * REAL_EPSILON * (r_abs(f.x) + r_abs(f.y) + r_abs(turning));
+}
+
+static real balance_slack(const core *c)
+{
+  return slack_of_load(c, spring_force(c), c->hand.phi - c->theta);
+}
+
+/* Is this moment zero? */
+static bool is_balanced(const core *c, real moment)
+{
+  vec f = spring_force(c);
+  real turning = c->body.kappa * (r_abs(c->hand.phi) + r_abs(c->theta));
+  real rounding = 2 * REAL_EPSILON * (c->body.size * (r_abs(f.x) + r_abs(f.y)) + turning);
+  return r_abs(moment) <= (MOMENT_ZERO * c->body.size + c->noise / 8) * c->body.size + rounding;
+}
+
+/* Two vertices may coincide to rounding (a thin rod far from the origin); they are then one place. */
+static bool is_pair(const core *c)
+{
+  return c->contact_count == 2 && c->contacts[0].vertex != c->contacts[1].vertex &&
+         v_length(v_sub(c->contacts[1].place, c->contacts[0].place)) > 8 * c->noise;
+}
+
 static bool all_at_one_vertex(const core *c)
 {
   for (int i = 1; i < c->contact_count; i++)
@@ -302,11 +332,12 @@ static int free_columns(const balance *q, int i, real columns[2][3], real basis[
   return 2;
 }
 
-/* Inverse of the Gram matrix A B B^T A^T of the forces that the bounds leave free. It may be singular (few
- * columns); a rounding-sized ridge keeps it solvable without moving the answer. */
-static bool invert_gram(balance *q)
+static void gram_of(const balance *q, real gram[3][3])
 {
-  real gram[3][3] = {{0}}, columns[2][3], basis[2][2], trace = 0;
+  real columns[2][3], basis[2][2];
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++)
+      gram[a][b] = 0;
   for (int i = 0; i < q->count; i++) {
     int free = free_columns(q, i, columns, basis);
     for (int k = 0; k < free; k++)
@@ -314,34 +345,53 @@ static bool invert_gram(balance *q)
         for (int b = 0; b < 3; b++)
           gram[a][b] += columns[k][a] * columns[k][b];
   }
-  for (int a = 0; a < 3; a++)
-    trace += gram[a][a];
-  if (trace == 0)
-    return false;
-  for (int a = 0; a < 3; a++) {
-    real m[6][7] = {{0}};
-    for (int i = 0; i < 3; i++)
-      for (int k = 0; k < 3; k++)
-        m[i][k] = gram[i][k] / trace + (i == k ? 256 * REAL_EPSILON : 0);
-    m[a][3] = 1 / trace;
-    if (!solve_small(3, m))
-      return false;
-    for (int i = 0; i < 3; i++)
-      q->inverse[i][a] = m[i][3];
-  }
-  return true;
 }
 
-/* Least norm under the bounds: f = B B^T A^T y with A f = target, and one step of refinement. Returns what is
- * left of the target, relative to its largest term. */
+/* A generalised inverse of the Gram matrix A B B^T A^T of the forces that the bounds leave free: sweeps with
+ * diagonal pivots, stopping where the rest is rounding. Directions that no free force has stay out of it. */
+static bool invert_gram(balance *q)
+{
+  real g[3][3], trace;
+  bool swept[3] = {false, false, false};
+  gram_of(q, g);
+  trace = g[0][0] + g[1][1] + g[2][2];
+  for (int rank = 0; rank < 3; rank++) {
+    int k = -1;
+    for (int a = 0; a < 3; a++)
+      if (!swept[a] && (k < 0 || g[a][a] > g[k][k]))
+        k = a;
+    if (g[k][k] <= 1024 * REAL_EPSILON * trace)
+      break;
+    swept[k] = true;
+    real pivot = g[k][k];
+    for (int a = 0; a < 3; a++)
+      for (int b = 0; b < 3; b++)
+        if (a != k && b != k)
+          g[a][b] -= g[a][k] * g[k][b] / pivot;
+    for (int a = 0; a < 3; a++)
+      if (a != k) {
+        g[a][k] /= pivot;
+        g[k][a] = g[a][k];
+      }
+    g[k][k] = -1 / pivot;
+  }
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++)
+      q->inverse[a][b] = swept[a] && swept[b] ? -g[a][b] : 0;
+  return swept[0] || swept[1] || swept[2];
+}
+
+/* Least norm under the bounds: f = B B^T A^T y with A f = target, with some steps of refinement. Returns what is
+ * left of the target. */
 static real bounded_least_norm(const balance *q, const real target[3], real *n, real *t, real y[3])
 {
+  enum { REFINEMENTS = 4 };
   real columns[2][3], basis[2][2], left[3] = {target[0], target[1], target[2]};
-  real scale = r_sqrt(dot3(target, target));
+  real scale = dot3(target, target);
   for (int i = 0; i < q->count; i++)
     n[i] = t[i] = 0;
   y[0] = y[1] = y[2] = 0;
-  for (int pass = 0; pass < 2; pass++) {
+  for (int pass = 0; pass < REFINEMENTS; pass++) {
     real dy[3];
     for (int a = 0; a < 3; a++)
       dy[a] = dot3(q->inverse[a], left);
@@ -357,7 +407,7 @@ static real bounded_least_norm(const balance *q, const real target[3], real *n, 
           left[a] -= along * columns[k][a];
       }
     }
-    if (dot3(left, left) <= 64 * REAL_EPSILON * REAL_EPSILON * scale * scale)
+    if (dot3(left, left) <= 64 * REAL_EPSILON * REAL_EPSILON * scale)
       break;
   }
   return r_sqrt(dot3(left, left));
@@ -417,9 +467,8 @@ static bool last_bounds_do(const core *c, balance *q, const real target[3])
   if (!same) {
     for (int k = 0; k < 3; k++)
       q->last_target[k] = target[k];
-    q->last_do =
-      bounded_least_norm(q, target, q->last_n, q->last_t, q->last_y) <= TOLERANCE * c->body.size / 4 &&
-      all_inside(q, q->last_n, q->last_t);
+    q->last_do = bounded_least_norm(q, target, q->last_n, q->last_t, q->last_y) <= balance_slack(c) / 4 &&
+                 all_inside(q, q->last_n, q->last_t);
   }
   return q->last_do;
 }
@@ -433,13 +482,13 @@ static bool cones_balance(core *c)
     return true;
   generators g;
   cone_generators(q, &g);
-  return nearest_in_cone(&g, target, weights, away) <= TOLERANCE * c->body.size;
+  return nearest_in_cone(&g, target, weights, away) <= balance_slack(c);
 }
 
 /* JUDGE: forces exist that balance with N >= 0 and |T| <= mu_s N. */
 static bool loads_balance(core *c)
 {
-  real slack = TOLERANCE * c->body.size;
+  real slack = balance_slack(c);
   if (c->contact_count == 0)
     return true;
   if (all_at_one_vertex(c)) { /* its moment is zero: HOLD or a slide has seen to that */
@@ -450,7 +499,7 @@ static bool loads_balance(core *c)
         return false;
     return true;
   }
-  if (c->contact_count == 2) {
+  if (is_pair(c)) {
     real low, high;
     int tightest[2];
     force_line l = two_contact_forces(c, load_about(c, c->contacts[0].place), 0, 1);
@@ -477,7 +526,7 @@ static void least_norm_of_two(const core *c, vec *forces)
   int tightest[2];
   line_constraints q = constraints_of(&l, 0);
   if (!feasible_interval(&q, &low, &high, tightest)) {
-    q = constraints_of(&l, TOLERANCE * c->body.size);
+    q = constraints_of(&l, balance_slack(c));
     feasible_interval(&q, &low, &high, tightest);
   }
   if (low <= high)
@@ -563,7 +612,7 @@ static void least_norm_forces(core *c, vec *forces)
 {
   if (c->contact_count == 1)
     forces[0] = v_neg(spring_force(c));
-  else if (c->contact_count == 2 && !all_at_one_vertex(c))
+  else if (is_pair(c))
     least_norm_of_two(c, forces);
   else if (c->contact_count > 0)
     least_norm_of_many(c, forces);
@@ -575,7 +624,7 @@ static void least_norm_forces(core *c, vec *forces)
  * the line that joins them runs inside both cones. */
 static bool cones_span_all(const core *c, const balance *q)
 {
-  if (c->contact_count == 2) {
+  if (is_pair(c)) {
     vec d = v_sub(c->contacts[1].place, c->contacts[0].place);
     const surface *a = &c->body.surfaces[c->contacts[0].surface],
                   *b = &c->body.surfaces[c->contacts[1].surface];

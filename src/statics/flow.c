@@ -131,7 +131,7 @@ static vec flow_velocity(const core *c, const flow_rates *r, int vertex)
 static bool modes_hold(const flow *f, const flow_rates *r)
 {
   const core *c = f->c;
-  real slack = TOLERANCE * c->body.size;
+  real slack = balance_slack(c);
   for (int i = 0; i < f->count; i++) {
     const surface *s = &c->body.surfaces[f->contacts[i].surface];
     vec v = flow_velocity(c, r, f->contacts[i].vertex);

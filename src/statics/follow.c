@@ -86,8 +86,9 @@ static branch_point branch_at(branch *b, real tau, real x_max)
   real pull = v_cross(r, b->way->travel) + c->body.kappa * b->way->turn; /* d moment / d tau */
   real theta_rate = p.stiffness > 0 ? pull / p.stiffness : 0;
   vec f_rate = v_mix(v_neg(b->way->travel), theta_rate, v_perp(r));
+  real slack = slack_of_load(c, f, at.phi - c->theta - b->dir * p.x);
   for (int k = 0; k < b->plane_count; k++) {
-    p.margin[k] = v_dot(b->planes[k], f) + TOLERANCE * c->body.size;
+    p.margin[k] = v_dot(b->planes[k], f) + slack;
     p.rate[k] = v_dot(b->planes[k], f_rate);
   }
   return p;
@@ -201,7 +202,7 @@ static next_event event_pinned(core *c, const hand_path *w, real tau)
     b.plane_length = r_max(b.plane_length, v_length(b.planes[k]));
   c->hand = w->to;
   real moment = spring_moment_about(c, b.place), x = 0, x_max = 0, touch_tau = R_HUGE, touch_x = 0;
-  if (r_abs(moment) > MOMENT_ZERO * c->body.size * c->body.size) {
+  if (!is_balanced(c, moment)) {
     b.dir = r_sign(moment);
     b.a_turn = turn_of(b.a, b.dir);
     path f = path_pinned(c, b.vertex, b.place, b.dir);
@@ -219,7 +220,7 @@ static next_event event_pinned(core *c, const hand_path *w, real tau)
     }
   }
   branch_point p = branch_at(&b, tau, x_max), q = branch_at(&b, r_min(1, touch_tau), x_max);
-  if (touch_tau < R_HUGE && q.x < touch_x - R(1e-9)) {
+  if (touch_tau < R_HUGE && q.x < touch_x - ANGLE_TIE) {
     /* The branch folds before it reaches that angle. */
     touch_tau = R_HUGE;
     q = branch_at(&b, 1, x_max);
@@ -234,7 +235,7 @@ static line_constraints constraints_at(core *c, const hand_path *w, real tau)
 {
   c->hand = hand_at(w, tau);
   force_line l = two_contact_forces(c, load_about(c, c->contacts[0].place), 0, 1);
-  return constraints_of(&l, TOLERANCE * c->body.size);
+  return constraints_of(&l, balance_slack(c));
 }
 
 /* The conflict of two constraints is linear in tau, so each root found cuts the bad end off for good. */
@@ -288,17 +289,13 @@ static next_event find_event(core *c, const hand_path *w, real tau)
 /* ---- level event ---- */
 
 /* Sliding on without events counts as one slip per sample. */
-static void count_slide_on(core *c, double t)
+static void count_slide_on(core *c)
 {
-  if (c->longest_slide_on > R(1e-12) * c->body.size) {
+  if (c->slid_on > R(1e-12) * c->body.size) {
     c->report->flags |= STIC_FLAG_SLIPPED;
     c->report->slips++;
-    c->event_time = t;
-    for (int i = 0; i < c->contact_count && c->sliding; i++)
-      record(c, STIC_EVENT_SLIP, c->contacts[i].vertex, c->contacts[i].surface, c->contacts[i].place,
-             c->longest_slide_on);
   }
-  c->longest_slide_on = 0;
+  c->slid_on = 0;
 }
 
 static void follow_event(core *c, hand from, hand to, double t_from, double t_to)
@@ -320,6 +317,7 @@ static void follow_event(core *c, hand from, hand to, double t_from, double t_to
     if (c->sliding) {
       real part;
       hand start = hand_at(&w, tau);
+      c->event_time = t_to;
       slide_end end = slide_on(c, &start, &to, &part);
       tau += part * (1 - tau);
       if (end == SLIDE_ON_TO_SAMPLE)
@@ -328,7 +326,7 @@ static void follow_event(core *c, hand from, hand to, double t_from, double t_to
         c->sliding = false;
         continue;
       }
-      next = tau + AFTER_EVENT;
+      next = tau + (end == SLIDE_ON_UNSURE ? window : AFTER_EVENT);
     } else if (!c->window_open) {
       c->noise = gap_noise(c);
       e = find_event(c, &w, tau);
@@ -354,7 +352,7 @@ static void follow_event(core *c, hand from, hand to, double t_from, double t_to
     c->window_open = c->happened && !c->sliding;
     tau = next;
   }
-  count_slide_on(c, t_to);
+  count_slide_on(c);
 }
 
 static void follow_substeps(core *c, hand from, hand to, double t_from, double t_to)

@@ -45,7 +45,7 @@ static bool go_to_hand(core *c)
 static bool turn_about(core *c, int vertex, vec place)
 {
   real moment = spring_moment_about(c, place);
-  if (r_abs(moment) <= MOMENT_ZERO * c->body.size * c->body.size)
+  if (is_balanced(c, moment))
     return false;
   path f = path_pinned(c, vertex, place, r_sign(moment));
   real x;

@@ -67,7 +67,7 @@ static bool becomes_free(core *c, const choice *o)
     }
   } else {
     real moment = spring_moment(c);
-    if (r_abs(moment) <= MOMENT_ZERO * c->body.size * c->body.size)
+    if (is_balanced(c, moment))
       return false;
     if (!all_grow_in_turn(c, o, holding_point(c), r_sign(moment), none, none))
       return false;
@@ -83,7 +83,7 @@ static bool turns_about_rest(core *c, const choice *o)
 {
   vec pivot = c->contacts[o->rest[0]].place, none = v_make(0, 0);
   real moment = spring_moment_about(c, pivot);
-  if (r_abs(moment) <= MOMENT_ZERO * c->body.size * c->body.size)
+  if (is_balanced(c, moment))
     return false;
   if (!all_grow_in_turn(c, o, pivot, r_sign(moment), none, none))
     return false;
@@ -100,7 +100,7 @@ static bool slides_on_rest(core *c, const choice *o)
   vec force = spring_force(c);
   real normal = -v_dot(force, s->n), tangential = v_dot(force, s->t);
   /* A slide that was stopped on its way is at mu_d N but for rounding: nothing drives it. */
-  real above = TOLERANCE * c->body.size;
+  real above = balance_slack(c);
   if (normal <= above || r_abs(tangential) <= s->mu_d * normal + above)
     return false;
   real sigma = slip_sense(c, s), shift = tangential - sigma * s->mu_d * normal;
@@ -115,8 +115,7 @@ static bool slides_on_rest(core *c, const choice *o)
       continue;
     if (starts_to_grow(-rate, 0, 1))
       return false;
-    if (r_abs(moment) <= MOMENT_ZERO * c->body.size * c->body.size ||
-        !gap_grows_in_turn(c, other, k->place, f.dir, velocity, acceleration))
+    if (is_balanced(c, moment) || !gap_grows_in_turn(c, other, k->place, f.dir, velocity, acceleration))
       return false;
   }
   int vertex = k->vertex, on = k->surface;

@@ -58,7 +58,7 @@ static void slide_vertex(core *c, int index)
     /* Then the angle, the place following from it. */
     real moment = spring_moment_about(c, place);
     c->turn_done = true;
-    if (r_abs(moment) > MOMENT_ZERO * c->body.size * c->body.size) {
+    if (!is_balanced(c, moment)) {
       path f = path_sliding(c, k->vertex, place, s->t, s->n, friction, r_sign(moment));
       wave normal = path_force_along(&f, v_neg(s->n));
       real x, x_normal = wave_first_down(&normal, 0, 2 * R_PI);
@@ -118,7 +118,7 @@ static bool edge_or_slot_starts(const core *c, int first, int second, real *sens
   pair_normals p;
   *sense = slip_sense(c, a);
   *velocity = v_scale(a->t, *sense);
-  real above = TOLERANCE * c->body.size;
+  real above = balance_slack(c);
   return normals_along_walls(c, first, second, *sense, &p) && p.first > above && p.second > above &&
          p.drive > above;
 }
@@ -239,9 +239,9 @@ static bool trammel_starts(const core *c, int first, int second, real *dir)
   wave na, nb;
   curve drive;
   /* A slide that was stopped by its second touch has N = 0 there but for rounding: that is no contact force. */
-  real above = TOLERANCE * c->body.size;
+  real above = balance_slack(c);
   return trammel_forces(c, &m, first, second, 0, &na, &nb, &drive) && wave_at(&na, 0) > above &&
-         wave_at(&nb, 0) > above && curve_at(&drive, 0) > MOMENT_ZERO * c->body.size * c->body.size;
+         wave_at(&nb, 0) > above && curve_at(&drive, 0) > 0 && !is_balanced(c, curve_at(&drive, 0));
 }
 
 static void slide_trammel(core *c, int first, int second, real dir)

@@ -14,7 +14,8 @@ enum { GUARDS_MAX = 4 + STIC_VERTICES_MAX };
 typedef enum slide_end {
   SLIDE_ON_TO_SAMPLE,
   SLIDE_ON_STUCK, /* the place would move back: no event */
-  SLIDE_ON_EVENT  /* a touch, N = 0 or a fold comes next */
+  SLIDE_ON_EVENT, /* a touch, N = 0 or a fold comes next */
+  SLIDE_ON_UNSURE /* nothing more could be proven in the steps allowed */
 } slide_end;
 
 /* Sliding with one degree of freedom from the pose at s = 0 on; s runs from 0 to 1 over the rest of the
@@ -27,7 +28,8 @@ typedef struct sliding_branch {
   wave normals[2][2]; /* [hand][contact] */
   real shifts[2];     /* of the place at the present angle: balance before turning */
   bool single;
-  vec w; /* single: t + sigma mu n, the place is w . (h - r) */
+  real slack; /* what a balance may be off */
+  vec w;      /* single: t + sigma mu n, the place is w . (h - r) */
   real sigma;
   vec hand_travel;
   int gap_count; /* single: gaps to other surfaces that depend on the place as well */
@@ -76,8 +78,7 @@ static sliding_point sliding_at(sliding_branch *b, real s)
   p.stiffness = -curve_rate(&g, p.x);
   p.pull = curve_at(&b->drives[1], p.x) - curve_at(&b->drives[0], p.x);
   for (int k = 0; k < b->contact_count; k++)
-    p.guards[k] =
-      mix(wave_at(&b->normals[0][k], p.x), s, wave_at(&b->normals[1][k], p.x)) + TOLERANCE * c->body.size;
+    p.guards[k] = mix(wave_at(&b->normals[0][k], p.x), s, wave_at(&b->normals[1][k], p.x)) + b->slack;
   if (!b->single)
     return p;
   const path *f = &b->paths[0];
@@ -121,23 +122,27 @@ static bool sliding_rates(const sliding_branch *b, const sliding_point *p, const
   rates[1] = xi * (turn_rate * turn_rate + turn_bend);
   for (int k = 0; k < b->gap_count; k++)
     rates[2 + k] =
-      (r_abs(b->gap_waves[k].c) + r_abs(b->gap_waves[k].s)) * turn_rate + r_abs(b->shifts[1] - b->shifts[0]);
+      (r_abs(b->gap_waves[k].c) + r_abs(b->gap_waves[k].s)) * turn_rate +
+      r_abs((b->shifts[1] - b->shifts[0]) * v_dot(b->c->body.surfaces[b->gaps[k].surface].n, f->t));
   return true;
 }
 
-/* The last s up to which all guards are proven positive; *lost is the guard that ends it (-1: a fold). */
+/* What ends a proven stretch, besides the index of a guard. */
+enum { LOST_NONE = -1, LOST_FOLD = -2, LOST_STEPS = -3 };
+
+/* The last s up to which all guards are proven positive. */
 static real last_sliding(sliding_branch *b, real s_end, int *lost)
 {
-  enum { DEPTH_MAX = 64, PIECES = 4096 };
+  enum { DEPTH_MAX = 64, PIECES = 1024 };
   sliding_point stack[DEPTH_MAX], p = sliding_at(b, 0);
   int depth = 0, count = guard_count(b);
   stack[depth++] = sliding_at(b, s_end);
-  *lost = -2;
+  *lost = LOST_NONE;
   for (int piece = 0; piece < PIECES && depth > 0; piece++) {
     sliding_point q = stack[depth - 1];
     real rates[GUARDS_MAX], ds = q.s - p.s, middle = (p.s + q.s) / 2;
     bool quiet = sliding_rates(b, &p, &q, rates);
-    int bad = quiet ? -2 : -1;
+    int bad = quiet ? LOST_NONE : LOST_FOLD;
     for (int k = 0; k < count; k++) {
       if (q.guards[k] < 0 && (p.guards[k] > 0 || k != 1 || !b->single))
         bad = k;
@@ -153,7 +158,7 @@ static real last_sliding(sliding_branch *b, real s_end, int *lost)
       stack[depth++] = sliding_at(b, middle);
       continue;
     }
-    if (!quiet && bad != -2) {
+    if (!quiet && bad != LOST_NONE) {
       *lost = bad;
       return p.s;
     }
@@ -162,16 +167,20 @@ static real last_sliding(sliding_branch *b, real s_end, int *lost)
   }
   if (depth == 0)
     return s_end;
-  *lost = -1;
+  *lost = LOST_STEPS;
   return p.s;
 }
 
-static void advance_contact(core *c, contact *k, vec place, real *slid)
+/* Brings a contact to where the sliding has come; recorded as a slip, but no event that starts a window. */
+static void advance_contact(core *c, contact *k, vec place)
 {
   vec on_surface = v_mix(place, -gap_of(c, place, k->surface), c->body.surfaces[k->surface].n);
-  *slid += v_length(v_sub(on_surface, k->place));
+  real length = v_length(v_sub(on_surface, k->place));
   k->place = on_surface;
   c->balance.known = false;
+  c->slid_on += length;
+  if (length > R(1e-12) * c->body.size)
+    record(c, STIC_EVENT_SLIP, k->vertex, k->surface, on_surface, length);
 }
 
 /* ---- one vertex ---- */
@@ -243,9 +252,11 @@ static bool trammel_branch(core *c, const hand *from, const hand *to, sliding_br
 }
 
 /* Slides along the turning branch as far as it goes; *part is how far along the rest of the path. */
-static slide_end slide_on_turning(core *c, const hand *from, const hand *to, real *part, real *slid)
+static slide_end slide_on_turning(core *c, const hand *from, const hand *to, real *part)
 {
   sliding_branch b = {.c = c, .x_max = 2 * R_PI};
+  c->hand = *to;
+  b.slack = balance_slack(c);
   *part = 0;
   if (c->contact_count == 1)
     single_branch(c, from, to, &b);
@@ -283,7 +294,7 @@ static slide_end slide_on_turning(core *c, const hand *from, const hand *to, rea
   if (x_stop < R_HUGE) {
     real before = curve_at(&b.drives[0], x_stop), after = curve_at(&b.drives[1], x_stop);
     real s = after > before ? r_max(0, r_min(1, -before / (after - before))) : 1;
-    if (sliding_at(&b, s).x >= x_stop - R(1e-9))
+    if (sliding_at(&b, s).x >= x_stop - ANGLE_TIE)
       s_end = s; /* else the branch folds first */
     else
       x_stop = R_HUGE;
@@ -294,17 +305,21 @@ static slide_end slide_on_turning(core *c, const hand *from, const hand *to, rea
   path f = b.paths[0];
   if (b.single)
     f.origin = v_mix(c->contacts[0].place, mix(b.shifts[0], *part, b.shifts[1]), f.t);
-  path_set_pose(c, &f, p.x);
-  advance_contact(c, &c->contacts[0], path_place(&f, p.x), slid);
-  if (!b.single)
-    advance_contact(c, &c->contacts[1], world_vertex(c, c->contacts[1].vertex), slid);
+  if (*part > 0) {
+    path_set_pose(c, &f, p.x);
+    advance_contact(c, &c->contacts[0], path_place(&f, p.x));
+    if (!b.single)
+      advance_contact(c, &c->contacts[1], world_vertex(c, c->contacts[1].vertex));
+  }
   if (b.single && lost == 1)
     return SLIDE_ON_STUCK;
-  return lost != -2 || x_stop < R_HUGE ? SLIDE_ON_EVENT : SLIDE_ON_TO_SAMPLE;
+  if (lost == LOST_STEPS)
+    return SLIDE_ON_UNSURE;
+  return lost != LOST_NONE || x_stop < R_HUGE ? SLIDE_ON_EVENT : SLIDE_ON_TO_SAMPLE;
 }
 
 /* An edge, or the walls of a slot: everything is linear. */
-static slide_end slide_on_along(core *c, const hand *from, const hand *to, real *part, real *slid)
+static slide_end slide_on_along(core *c, const hand *from, const hand *to, real *part)
 {
   pair_normals start, end;
   real sense = c->sliding_sense;
@@ -327,20 +342,20 @@ static slide_end slide_on_along(core *c, const hand *from, const hand *to, real 
   if (second < 0)
     stop = r_min(stop, start.second / (start.second - second));
   *part = r_max(0, stop);
+  if (*part == 0)
+    return SLIDE_ON_EVENT;
   travel = v_scale(travel, *part);
   c->p = v_add(c->p, travel);
   for (int i = 0; i < 2; i++)
-    advance_contact(c, &c->contacts[i], v_add(c->contacts[i].place, travel), slid);
+    advance_contact(c, &c->contacts[i], v_add(c->contacts[i].place, travel));
   return *part < 1 ? SLIDE_ON_EVENT : SLIDE_ON_TO_SAMPLE;
 }
 
 static slide_end slide_on(core *c, const hand *from, const hand *to, real *part)
 {
   bool along = c->contact_count == 2 && are_parallel(c, 0, 1);
-  real slid = 0;
   c->noise = gap_noise(c);
-  slide_end e = along ? slide_on_along(c, from, to, part, &slid) : slide_on_turning(c, from, to, part, &slid);
-  c->longest_slide_on += slid;
+  slide_end e = along ? slide_on_along(c, from, to, part) : slide_on_turning(c, from, to, part);
   c->report->decisions |= STIC_DECISION_SLIDE_ON;
   forget_opened_that_left(c);
   return e;

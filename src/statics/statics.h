@@ -22,6 +22,8 @@ enum {
 /* Where judgements draw the line, in the scaled units (model: 1e-12 k_p size, 1e-14 k_p size^2). Single
  * precision cannot hold these; there they are its own rounding. */
 #define TOLERANCE r_max(R(1e-12), 16 * REAL_EPSILON)
+/* Angles this near to each other are the same touch. */
+#define ANGLE_TIE r_max(R(1e-9), 64 * REAL_EPSILON)
 #define MOMENT_ZERO r_max(R(1e-14), 4 * REAL_EPSILON)
 
 typedef struct surface {
@@ -116,11 +118,11 @@ typedef struct core {
   bool turn_done;  /* the last slide reached the zero of its moment: no turn right after it */
   bool happened;   /* touch, opening, slip: an event */
   real longest_slide;
-  real longest_slide_on; /* slid without events since the last sample */
-  int flow_steps;        /* spent on the viscous flow: bounded per RELAX */
-  bool slid_to_zero;     /* the last action was a slide that reached its balance */
-  real slide_sense;      /* ... in this sense (see sliding_sense) */
-  real noise;            /* rounding of a gap at these coordinates */
+  real slid_on;      /* slid without events since the last sample */
+  int flow_steps;    /* spent on the viscous flow: bounded per RELAX */
+  bool slid_to_zero; /* the last action was a slide that reached its balance */
+  real slide_sense;  /* ... in this sense (see sliding_sense) */
+  real noise;        /* rounding of a gap at these coordinates */
 
   stic_core_report *report;
   stic_event *events;
@@ -201,6 +203,9 @@ typedef struct wrench {
 } wrench;
 
 static wrench load_about(const core *c, vec point);
+static real slack_of_load(const core *c, vec f, real turn);
+static real balance_slack(const core *c);                    /* what a balance of forces may be off */
+static bool is_balanced(const core *c, real moment);         /* is this moment zero? */
 static int vertex_cone_planes(const core *c, vec planes[3]); /* all contacts at one vertex */
 static bool loads_balance(core *c);                          /* JUDGE's question */
 static bool all_at_one_vertex(const core *c);

@@ -112,7 +112,7 @@ static void add_touching(core *c)
     for (int v = 0; v < c->body.vertex_count; v++) {
       if (!(c->near.vertices[i] >> v & 1) || is_contact(c, v, s) || is_opened(c, v, s))
         continue;
-      if (gap_of(c, world_vertex(c, v), s) <= TOLERANCE * c->body.size)
+      if (gap_of(c, world_vertex(c, v), s) <= TOLERANCE * c->body.size + c->noise)
         add_contact(c, v, s);
     }
   }
