@@ -17,7 +17,7 @@ static wrench load_about(const core *c, vec point)
 static real slack_of_load(const core *c, vec f, real turn)
 {
   real turning = c->body.kappa * turn / c->body.size;
-  return TOLERANCE * c->body.size + 4 * c->noise +
+  return TOLERANCE * c->body.size + c->noise / 4 +
          16 * REAL_EPSILON * (r_abs(f.x) + r_abs(f.y) + r_abs(turning));
 }
 
