@@ -82,8 +82,6 @@ struct stic_supervisor {
 
 static void report(stic_supervisor *s, stic_connection state, const char *text)
 {
-  if (state == s->reported)
-    return;
   s->reported = state;
   if (s->options.report)
     s->options.report(s->options.context, state, text);
@@ -92,6 +90,8 @@ static void report(stic_supervisor *s, stic_connection state, const char *text)
 static void set_state(stic_supervisor *s, stic_connection state)
 {
   s->state = state;
+  if (state == s->reported)
+    return;
   if (state == STIC_CONNECTION_RUNNING) {
     if (s->losing)
       s->closed.reconnects++;
@@ -190,12 +190,14 @@ static int give_own(stic_supervisor *s, stic_device_sample *sample, int64_t now_
 /* The last pose without anything that could move or hold; 0 if that has been said already. */
 static int give_up_hand(stic_supervisor *s, stic_device_sample *sample, int64_t now_ns)
 {
+  const unsigned pose = STIC_SAMPLE_POSITION | STIC_SAMPLE_ORIENTATION;
+
   s->grip_barred = true;
-  if (!s->given || (s->last.flags & ~(unsigned)(STIC_SAMPLE_POSITION | STIC_SAMPLE_ORIENTATION)) == 0)
+  if (!s->given || (!(s->last.flags & ~pose) && s->last.buttons == 0))
     return 0;
   *sample = s->last;
   sample->buttons = 0;
-  sample->flags &= STIC_SAMPLE_POSITION | STIC_SAMPLE_ORIENTATION;
+  sample->flags &= pose;
   return give_own(s, sample, now_ns);
 }
 
@@ -232,7 +234,8 @@ static int lose(stic_supervisor *s, stic_device_sample *sample, int64_t now_ns)
   stic_watch_lost(&s->watch, now_ns);
   s->state = STIC_CONNECTION_LOST;
   stic_error_format(&s->error, text, sizeof text);
-  report(s, STIC_CONNECTION_LOST, text);
+  if (s->reported != STIC_CONNECTION_LOST)
+    report(s, STIC_CONNECTION_LOST, text);
   return give_up_hand(s, sample, now_ns);
 }
 

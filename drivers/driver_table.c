@@ -3,6 +3,8 @@
 #include "driver.h"
 #include "gamepad/gamepad_driver.h"
 #include "hydra/hydra_driver.h"
+#include "logitech/logitech_driver.h"
+#include "sample/sample_driver.h"
 #include "spacemouse/spacemouse_driver.h"
 #include "trace/trace_driver.h"
 
@@ -16,6 +18,8 @@ static const stic_driver *const drivers[] = {
   &stic_hydra_driver,
   &stic_gamepad_driver,
   &stic_trace_driver,
+  &stic_logitech_driver,
+  &stic_sample_driver,
 };
 
 #define DRIVER_COUNT ((int)(sizeof drivers / sizeof drivers[0]))

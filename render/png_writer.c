@@ -1,9 +1,7 @@
 #include "png_writer.h"
 
 #include <errno.h>
-#include <png.h>
 #include <pthread.h>
-#include <setjmp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +9,7 @@
 #include <unistd.h>
 
 #include "error.h"
+#include "png_encoder.h"
 
 /* Pictures that wait per worker: enough to even out, few enough to bound memory. */
 #define QUEUE_PER_WORKER 2
@@ -27,58 +26,20 @@ char *stic_png_sequence_path(const char *folder, int64_t index)
 
 /* ---- one file ------------------------------------------------------------------------------ */
 
-static void on_png_error(png_structp png, png_const_charp message)
-{
-  (void)message; /* the cause is in errno, or in memory */
-  longjmp(png_jmpbuf(png), 1);
-}
-
-static void on_png_warning(png_structp png, png_const_charp message)
-{
-  (void)png;
-  (void)message;
-}
-
-/* False on failure. Nothing that setjmp() could lose is changed here. */
-static bool encode_rows(png_structp png, png_infop info, FILE *file, const stic_image *image)
-{
-  if (setjmp(png_jmpbuf(png)))
-    return false;
-  png_init_io(png, file);
-  png_set_IHDR(png, info, (png_uint_32)image->width, (png_uint_32)image->height, 8, PNG_COLOR_TYPE_RGB,
-               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
-  png_set_compression_level(png, 1);
-  png_set_compression_buffer_size(png, 65536);
-  png_write_info(png, info);
-  png_set_filler(png, 0, PNG_FILLER_AFTER);
-  for (int y = 0; y < image->height; y++)
-    png_write_row(png, image->pixels + (size_t)y * (size_t)image->width * 4);
-  png_write_end(png, info);
-  return true;
-}
-
-static bool encode(FILE *file, const stic_image *image)
-{
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, on_png_error, on_png_warning);
-  png_infop info = png ? png_create_info_struct(png) : NULL;
-  bool done = info && encode_rows(png, info, file, image);
-
-  png_destroy_write_struct(&png, &info);
-  return done;
-}
-
 /* 0 or an errno; what failed is removed again if it is a file of ours. */
-static int write_file(const char *path, const stic_image *image, bool ours)
+static int write_file(const char *path, stic_png_encoder *encoder, const stic_image *image, bool ours)
 {
-  FILE *file = fopen(path, "wb");
+  size_t length;
+  const uint8_t *png = stic_png_encode(encoder, image, &length);
+  FILE *file = png ? fopen(path, "wb") : NULL;
   int problem = 0;
 
   if (!file)
-    return errno;
+    return png ? errno : ENOMEM;
+  setvbuf(file, NULL, _IONBF, 0); /* it is written at once */
   errno = 0;
-  if (!encode(file, image))
-    problem = errno ? errno : ENOMEM;
+  if (fwrite(png, 1, length, file) != length)
+    problem = errno ? errno : EIO;
   if (fclose(file) && !problem)
     problem = errno;
   if (problem && ours)
@@ -92,28 +53,37 @@ static stic_status refused(const char *path, int problem, stic_error *err)
                         "cannot write: %s", strerror(problem));
 }
 
-stic_status stic_png_write(const char *path, const stic_image *image, stic_error *err)
+/* 0 or an errno. */
+static int replace_file(const char *path, stic_png_encoder *encoder, const stic_image *image)
 {
   size_t room = strlen(path) + 32;
   char *draft = malloc(room);
-  struct stat there;
   int problem;
 
   if (!draft)
-    return refused(path, ENOMEM, err);
-  /* A device or a pipe cannot be replaced. */
-  if (!stat(path, &there) && !S_ISREG(there.st_mode)) {
-    free(draft);
-    problem = write_file(path, image, false);
-    return problem ? refused(path, problem, err) : STIC_OK;
-  }
+    return ENOMEM;
   snprintf(draft, room, "%s.%ld.tmp", path, (long)getpid());
-  problem = write_file(draft, image, true);
+  problem = write_file(draft, encoder, image, true);
   if (!problem && rename(draft, path) != 0) {
     problem = errno;
     unlink(draft);
   }
   free(draft);
+  return problem;
+}
+
+stic_status stic_png_write(const char *path, const stic_image *image, stic_error *err)
+{
+  stic_png_encoder *encoder = stic_png_encoder_create(STIC_PNG_QUICK);
+  struct stat there;
+  int problem = ENOMEM;
+
+  /* A device or a pipe cannot be replaced. */
+  if (encoder && !stat(path, &there) && !S_ISREG(there.st_mode))
+    problem = write_file(path, encoder, image, false);
+  else if (encoder)
+    problem = replace_file(path, encoder, image);
+  stic_png_encoder_destroy(encoder);
   return problem ? refused(path, problem, err) : STIC_OK;
 }
 
@@ -138,11 +108,11 @@ struct stic_png_writer {
   pthread_t threads[STIC_PNG_WORKERS_MAX];
 };
 
-static void write_slot(stic_png_writer *w, const slot *s, stic_error *err)
+static void write_slot(stic_png_writer *w, stic_png_encoder *encoder, const slot *s, stic_error *err)
 {
   stic_image image = {w->width, w->height, s->pixels};
   char *path = stic_png_sequence_path(w->folder, s->index);
-  int problem = path ? write_file(path, &image, true) : ENOMEM;
+  int problem = path ? write_file(path, encoder, &image, true) : ENOMEM;
 
   err->status = STIC_OK;
   if (problem)
@@ -156,10 +126,12 @@ static void *work(void *writer)
 {
   stic_png_writer *w = writer;
   slot own = {0, malloc((size_t)w->width * (size_t)w->height * 4)};
+  stic_png_encoder *encoder = stic_png_encoder_create(STIC_PNG_QUICK);
+  bool able = own.pixels && encoder;
   stic_error err;
 
   pthread_mutex_lock(&w->lock);
-  if (!own.pixels && !w->failure.status)
+  if (!able && !w->failure.status)
     refused(w->folder, ENOMEM, &w->failure);
   for (;;) {
     slot *s = &w->slots[w->first], taken;
@@ -172,7 +144,7 @@ static void *work(void *writer)
     }
     w->first = (w->first + 1) % w->slot_count;
     w->waiting--;
-    if (!own.pixels || w->failure.status) {
+    if (!able || w->failure.status) {
       pthread_cond_broadcast(&w->changed);
       continue;
     }
@@ -182,7 +154,7 @@ static void *work(void *writer)
     w->busy++;
     pthread_cond_broadcast(&w->changed);
     pthread_mutex_unlock(&w->lock);
-    write_slot(w, &own, &err);
+    write_slot(w, encoder, &own, &err);
     pthread_mutex_lock(&w->lock);
     w->busy--;
     if (err.status && !w->failure.status)
@@ -190,6 +162,7 @@ static void *work(void *writer)
     pthread_cond_broadcast(&w->changed);
   }
   pthread_mutex_unlock(&w->lock);
+  stic_png_encoder_destroy(encoder);
   free(own.pixels);
   return NULL;
 }

@@ -3,6 +3,7 @@
 #include <float.h>
 #include <locale.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -195,4 +196,16 @@ stic_number_status stic_number_parse_integer(const char *text, size_t length, in
     return STIC_NUMBER_TOO_LARGE;
   *value = v;
   return STIC_NUMBER_OK;
+}
+
+const char *stic_number_range_text(double low, double high, bool above_low, const char *unit, char *out,
+                                   size_t out_size)
+{
+  const char *space = unit[0] ? " " : "";
+
+  if (low == -high)
+    snprintf(out, out_size, "within +-%g%s%s", high, space, unit);
+  else
+    snprintf(out, out_size, "%s %g and <= %g%s%s", above_low ? ">" : ">=", low, high, space, unit);
+  return out;
 }

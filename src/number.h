@@ -26,4 +26,8 @@ stic_number_status stic_number_parse_ns(const char *text, size_t length, int64_t
 stic_number_status stic_number_parse_integer(const char *text, size_t length, int64_t low,
                                              int64_t high, int64_t *value);
 
+/* "within +-1 m", "> 0 and <= 10 m": what a message expects. `unit` may be "". Returns out. */
+const char *stic_number_range_text(double low, double high, bool above_low, const char *unit, char *out,
+                                   size_t out_size);
+
 #endif

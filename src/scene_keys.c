@@ -1,5 +1,7 @@
 #include "scene_keys.h"
 
+#include "number.h"
+
 #include <assert.h>
 #include <stdio.h>
 #include <string.h>
@@ -34,6 +36,7 @@ static const stic_key_row rows[STIC_KEY_COUNT] = {
   [STIC_KEY_FRICTION] = {"friction", STIC_KEY_ROOT, STIC_TYPE_MAPPING, 0, STIC_NO_OFFSET, 0, 0, false, false, false, ""},
   [STIC_KEY_STATIC] = {"static", STIC_KEY_FRICTION, STIC_TYPE_NUMBERS, 1, STIC_NO_OFFSET, 0, 1e6, false, false, false, ""},
   [STIC_KEY_DYNAMIC] = {"dynamic", STIC_KEY_FRICTION, STIC_TYPE_NUMBERS, 1, STIC_NO_OFFSET, 0, 1e6, false, false, false, ""},
+  [STIC_KEY_TRACKER] = {"tracker", STIC_KEY_ROOT, STIC_TYPE_ELSEWHERE, 0, STIC_NO_OFFSET, 0, 0, false, false, false, ""},
   [STIC_KEY_SURFACES] = {"surfaces", STIC_KEY_ROOT, STIC_TYPE_SURFACES, 0, STIC_NO_OFFSET, 1, STIC_SURFACES_MAX, false, false, true, ""},
   [STIC_KEY_SURFACE] = {"*", STIC_KEY_SURFACES, STIC_TYPE_MAPPING, 0, STIC_NO_OFFSET, 0, 0, false, false, false, ""},
   [STIC_KEY_SURFACE_NAME] = {"name", STIC_KEY_SURFACE, STIC_TYPE_NAME, 0, SURFACE(name), 0, 0, false, false, false, ""},
@@ -73,14 +76,7 @@ const char *stic_key_path(stic_key key, int surface, char *out, size_t out_size)
 
 static const char *range_text(const stic_key_row *row, char *out, size_t out_size)
 {
-  const char *space = row->unit[0] ? " " : "";
-
-  if (row->low == -row->high)
-    snprintf(out, out_size, "within +-%g%s%s", row->high, space, row->unit);
-  else
-    snprintf(out, out_size, "%s %g and <= %g%s%s", row->above_low ? ">" : ">=", row->low, row->high,
-             space, row->unit);
-  return out;
+  return stic_number_range_text(row->low, row->high, row->above_low, row->unit, out, out_size);
 }
 
 const char *stic_key_expected(stic_key key, char *out, size_t out_size)
@@ -90,6 +86,7 @@ const char *stic_key_expected(stic_key key, char *out, size_t out_size)
 
   switch (row->type) {
   case STIC_TYPE_MAPPING:
+  case STIC_TYPE_ELSEWHERE:
     snprintf(out, out_size, "a mapping of keys");
     break;
   case STIC_TYPE_SURFACES:

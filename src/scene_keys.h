@@ -26,6 +26,7 @@ typedef enum stic_key {
   STIC_KEY_FRICTION,
   STIC_KEY_STATIC,
   STIC_KEY_DYNAMIC,
+  STIC_KEY_TRACKER,
   STIC_KEY_SURFACES,
   STIC_KEY_SURFACE, /* one item of the list; from here on keys belong to a surface */
   STIC_KEY_SURFACE_NAME,
@@ -45,7 +46,8 @@ typedef enum stic_key_type {
   STIC_TYPE_NUMBERS, /* `count` of them; 1: a bare number, else a list */
   STIC_TYPE_SIZE,    /* width, height, depth */
   STIC_TYPE_POLYGON, /* list of points */
-  STIC_TYPE_HOLD
+  STIC_TYPE_HOLD,
+  STIC_TYPE_ELSEWHERE /* a mapping that the reader of trackers reads */
 } stic_key_type;
 
 typedef struct stic_key_row {

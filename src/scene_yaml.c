@@ -3,22 +3,16 @@
 #include "error.h"
 #include "number.h"
 #include "scene_keys.h"
+#include "yaml_text.h"
 
 #include <assert.h>
-#include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
-#include <yaml.h>
 
-#define FILE_MAX_BYTES (1 << 20)
 #define FORMAT_VERSION 1
-/* A scene needs six levels; libyaml's time grows with the square of the depth. */
-#define NESTING_MAX 32
 #define SURFACE_KEYS (STIC_KEY_COUNT - STIC_KEY_SURFACE)
 #define PI 3.14159265358979323846
 
@@ -33,7 +27,7 @@ typedef struct origin {
 typedef struct reading {
   const char *path;
   const stic_override *override; /* being applied; NULL while the file is read */
-  yaml_document_t *document;
+  stic_yaml yaml;
   stic_scene *scene;
   stic_friction friction; /* of the scene; NaN: not given */
   origin origins[STIC_KEY_SURFACE];
@@ -82,68 +76,17 @@ static void tell(reading *r, bool warning, stic_status status, int64_t line, con
 
 #define BAD(r, line, ...) tell(r, false, STIC_BAD_INPUT, line, __VA_ARGS__)
 
-static int64_t line_of(const yaml_node_t *node)
-{
-  return (int64_t)node->start_mark.line + 1;
-}
-
-/* What a node is, for a message: its text in quotes, or its kind. */
-static const char *found_text(const yaml_node_t *node, char *out, size_t out_size)
-{
-  char text[48];
-
-  switch (node->type) {
-  case YAML_SCALAR_NODE:
-    if (node->data.scalar.length == 0)
-      snprintf(out, out_size, "nothing");
-    else
-      snprintf(out, out_size, "'%s'%s",
-               stic_error_quote((const char *)node->data.scalar.value, node->data.scalar.length, text,
-                                sizeof text),
-               node->data.scalar.style == YAML_PLAIN_SCALAR_STYLE ? "" : " in quotes");
-    break;
-  case YAML_SEQUENCE_NODE:
-    snprintf(out, out_size, "a list of %ld",
-             (long)(node->data.sequence.items.top - node->data.sequence.items.start));
-    break;
-  case YAML_MAPPING_NODE:
-    snprintf(out, out_size, "a mapping");
-    break;
-  case YAML_NO_NODE:
-    snprintf(out, out_size, "nothing");
-    break;
-  }
-  return out;
-}
-
 /* The usual refusal: this key's value is that, expected what the table says. */
 static void bad_value(reading *r, stic_key key, int surface, const yaml_node_t *node)
 {
   char path[96], found[80], expected[160];
 
   origin_of(r, key, surface)->bad = true;
-  BAD(r, line_of(node), "%s is %s; expected %s", stic_key_path(key, surface, path, sizeof path),
-      found_text(node, found, sizeof found), stic_key_expected(key, expected, sizeof expected));
+  BAD(r, stic_yaml_line(node), "%s is %s; expected %s", stic_key_path(key, surface, path, sizeof path),
+      stic_yaml_found(node, found, sizeof found), stic_key_expected(key, expected, sizeof expected));
 }
 
 /* ---- values ------------------------------------------------------------------------------ */
-
-static int item_count(const yaml_node_t *node)
-{
-  return (int)(node->data.sequence.items.top - node->data.sequence.items.start);
-}
-
-static yaml_node_t *item(reading *r, const yaml_node_t *node, int i)
-{
-  return yaml_document_get_node(r->document, node->data.sequence.items.start[i]);
-}
-
-static bool read_number(const yaml_node_t *node, double *value)
-{
-  return node->type == YAML_SCALAR_NODE && node->data.scalar.style == YAML_PLAIN_SCALAR_STYLE &&
-         stic_number_parse((const char *)node->data.scalar.value, node->data.scalar.length, value) ==
-           STIC_NUMBER_OK;
-}
 
 /* A list of exactly `count` numbers; complains about the list or about the number in it. */
 static bool read_numbers(reading *r, stic_key key, int surface, const yaml_node_t *node, int count,
@@ -151,18 +94,18 @@ static bool read_numbers(reading *r, stic_key key, int surface, const yaml_node_
 {
   char path[96], found[80];
 
-  if (node->type != YAML_SEQUENCE_NODE || item_count(node) != count) {
+  if (node->type != YAML_SEQUENCE_NODE || stic_yaml_count(node) != count) {
     bad_value(r, key, surface, node);
     return false;
   }
   for (int i = 0; i < count; i++) {
-    const yaml_node_t *number = item(r, node, i);
+    const yaml_node_t *number = stic_yaml_item(&r->yaml, node, i);
 
-    if (read_number(number, &values[i]))
+    if (stic_yaml_number(number, &values[i]))
       continue;
     origin_of(r, key, surface)->bad = true;
-    BAD(r, line_of(number), "%s has %s; expected a plain finite number",
-        stic_key_path(key, surface, path, sizeof path), found_text(number, found, sizeof found));
+    BAD(r, stic_yaml_line(number), "%s has %s; expected a plain finite number",
+        stic_key_path(key, surface, path, sizeof path), stic_yaml_found(number, found, sizeof found));
     return false;
   }
   return true;
@@ -188,13 +131,13 @@ static void read_numbers_key(reading *r, stic_key key, int surface, const yaml_n
   if (row->count > 1) {
     if (!read_numbers(r, key, surface, node, row->count, values))
       return;
-  } else if (!read_number(node, &values[0])) {
+  } else if (!stic_yaml_number(node, &values[0])) {
     bad_value(r, key, surface, node);
     return;
   }
   for (int i = 0; i < row->count; i++) {
     if (!in_range(row, values[i])) {
-      bad_value(r, key, surface, row->count > 1 ? item(r, node, i) : node);
+      bad_value(r, key, surface, row->count > 1 ? stic_yaml_item(&r->yaml, node, i) : node);
       return;
     }
   }
@@ -211,7 +154,7 @@ static void read_size(reading *r, const yaml_node_t *node)
     return;
   for (int i = 0; i < 3; i++) {
     if (!in_range(row, size[i])) {
-      bad_value(r, STIC_KEY_SIZE, -1, item(r, node, i));
+      bad_value(r, STIC_KEY_SIZE, -1, stic_yaml_item(&r->yaml, node, i));
       return;
     }
   }
@@ -227,27 +170,27 @@ static void read_polygon(reading *r, const yaml_node_t *node)
   stic_scene *s = r->scene;
   int count;
 
-  if (node->type != YAML_SEQUENCE_NODE || item_count(node) < 3) {
+  if (node->type != YAML_SEQUENCE_NODE || stic_yaml_count(node) < 3) {
     bad_value(r, STIC_KEY_POLYGON, -1, node);
     return;
   }
-  count = item_count(node);
+  count = stic_yaml_count(node);
   if (count > STIC_VERTICES_MAX) {
     r->origins[STIC_KEY_POLYGON].bad = true;
-    BAD(r, line_of(item(r, node, STIC_VERTICES_MAX)), "object.polygon has %d vertices; expected 3 to %d",
+    BAD(r, stic_yaml_line(stic_yaml_item(&r->yaml, node, STIC_VERTICES_MAX)), "object.polygon has %d vertices; expected 3 to %d",
         count, STIC_VERTICES_MAX);
     return;
   }
   for (int i = 0; i < count; i++) {
-    const yaml_node_t *point = item(r, node, i);
+    const yaml_node_t *point = stic_yaml_item(&r->yaml, node, i);
 
-    r->vertex_lines[i] = line_of(point);
-    if (point->type != YAML_SEQUENCE_NODE || item_count(point) != 2) {
+    r->vertex_lines[i] = stic_yaml_line(point);
+    if (point->type != YAML_SEQUENCE_NODE || stic_yaml_count(point) != 2) {
       char found[80];
 
       r->origins[STIC_KEY_POLYGON].bad = true;
-      BAD(r, line_of(point), "vertex %d of object.polygon is %s; expected [x, y] in m", i,
-          found_text(point, found, sizeof found));
+      BAD(r, stic_yaml_line(point), "vertex %d of object.polygon is %s; expected [x, y] in m", i,
+          stic_yaml_found(point, found, sizeof found));
       return;
     }
     if (!read_numbers(r, STIC_KEY_POLYGON, -1, point, 2, s->vertices[i]))
@@ -300,7 +243,7 @@ static void read_version(reading *r, const yaml_node_t *node)
   if (stic_number_parse_integer(text, strlen(text), 0, INT64_MAX, &version) != STIC_NUMBER_OK)
     bad_value(r, STIC_KEY_VERSION, -1, node);
   else if (version != FORMAT_VERSION)
-    BAD(r, line_of(node), "the scene has format version %lld; expected %d, which this program reads",
+    BAD(r, stic_yaml_line(node), "the scene has format version %lld; expected %d, which this program reads",
         (long long)version, FORMAT_VERSION);
 }
 
@@ -348,7 +291,7 @@ static void unknown_key(reading *r, stic_key parent, int surface, const yaml_nod
 {
   char found[80], where[96], names[128];
 
-  BAD(r, line_of(name), "unknown key %s in %s; expected %s", found_text(name, found, sizeof found),
+  BAD(r, stic_yaml_line(name), "unknown key %s in %s; expected %s", stic_yaml_found(name, found, sizeof found),
       where_text(parent, surface, where, sizeof where), children_text(parent, names, sizeof names));
 }
 
@@ -365,7 +308,7 @@ static void report_missing(reading *r, stic_key parent, int surface, const yaml_
     if (row->parent != parent || !row->required || seen[key] || key < STIC_KEY_SURFACE)
       continue; /* those outside surfaces may still come from --set: see report_absent() */
     origin_of(r, key, surface)->bad = true;
-    BAD(r, line_of(node), "%s is missing; expected %s", stic_key_path(key, surface, path, sizeof path),
+    BAD(r, stic_yaml_line(node), "%s is missing; expected %s", stic_key_path(key, surface, path, sizeof path),
         stic_key_expected(key, expected, sizeof expected));
   }
 }
@@ -378,14 +321,14 @@ static void read_mapping(reading *r, stic_key key, int surface, const yaml_node_
     char where[96], found[80];
 
     origin_of(r, key, surface)->bad = true;
-    BAD(r, line_of(node), "%s is %s; expected a mapping of keys",
-        where_text(key, surface, where, sizeof where), found_text(node, found, sizeof found));
+    BAD(r, stic_yaml_line(node), "%s is %s; expected a mapping of keys",
+        where_text(key, surface, where, sizeof where), stic_yaml_found(node, found, sizeof found));
     return;
   }
   for (yaml_node_pair_t *pair = node->data.mapping.pairs.start; pair < node->data.mapping.pairs.top;
        pair++) {
-    const yaml_node_t *name = yaml_document_get_node(r->document, pair->key);
-    const yaml_node_t *value = yaml_document_get_node(r->document, pair->value);
+    const yaml_node_t *name = stic_yaml_node(&r->yaml, pair->key);
+    const yaml_node_t *value = stic_yaml_node(&r->yaml, pair->value);
     stic_key child = STIC_KEY_ROOT;
     char path[96];
 
@@ -394,14 +337,14 @@ static void read_mapping(reading *r, stic_key key, int surface, const yaml_node_
     if (child == STIC_KEY_ROOT || child == STIC_KEY_SURFACE) {
       unknown_key(r, key, surface, name);
     } else if (seen[child]) {
-      BAD(r, line_of(name), "%s is given again, first in line %lld; expected it once",
+      BAD(r, stic_yaml_line(name), "%s is given again, first in line %lld; expected it once",
           stic_key_path(child, surface, path, sizeof path), (long long)seen[child]);
     } else {
-      seen[child] = line_of(name);
+      seen[child] = stic_yaml_line(name);
       read_value(r, child, surface, value);
       /* A mapping in block style begins in its first key's line; its own name says more. */
       if (value->type == YAML_MAPPING_NODE && !r->override)
-        origin_of(r, child, surface)->line = line_of(name);
+        origin_of(r, child, surface)->line = stic_yaml_line(name);
     }
   }
   report_missing(r, key, surface, node, seen);
@@ -420,23 +363,23 @@ static void read_surfaces(reading *r, const yaml_node_t *node)
 {
   int count;
 
-  if (node->type != YAML_SEQUENCE_NODE || item_count(node) < 1) {
+  if (node->type != YAML_SEQUENCE_NODE || stic_yaml_count(node) < 1) {
     bad_value(r, STIC_KEY_SURFACES, -1, node);
     return;
   }
-  count = item_count(node);
+  count = stic_yaml_count(node);
   if (count > STIC_SURFACES_MAX) {
     r->origins[STIC_KEY_SURFACES].bad = true;
-    BAD(r, line_of(item(r, node, STIC_SURFACES_MAX)), "surfaces has %d items; expected 1 to %d", count,
+    BAD(r, stic_yaml_line(stic_yaml_item(&r->yaml, node, STIC_SURFACES_MAX)), "surfaces has %d items; expected 1 to %d", count,
         STIC_SURFACES_MAX);
     count = STIC_SURFACES_MAX;
   }
   r->scene->surface_count = count;
   for (int i = 0; i < count; i++) {
-    const yaml_node_t *surface = item(r, node, i);
+    const yaml_node_t *surface = stic_yaml_item(&r->yaml, node, i);
 
     surface_init(r, i);
-    r->scene->surfaces[i].line = r->override ? 0 : line_of(surface);
+    r->scene->surfaces[i].line = r->override ? 0 : stic_yaml_line(surface);
     read_value(r, STIC_KEY_SURFACE, i, surface);
   }
 }
@@ -445,7 +388,7 @@ static void read_value(reading *r, stic_key key, int surface, const yaml_node_t 
 {
   origin *o = origin_of(r, key, surface);
 
-  *o = (origin){r->override ? 0 : line_of(node), true, false, r->override != NULL};
+  *o = (origin){r->override ? 0 : stic_yaml_line(node), true, false, r->override != NULL};
   switch (stic_key_get(key)->type) {
   case STIC_TYPE_MAPPING:
     read_mapping(r, key, surface, node);
@@ -471,186 +414,42 @@ static void read_value(reading *r, stic_key key, int surface, const yaml_node_t 
   case STIC_TYPE_HOLD:
     read_hold(r, node);
     break;
+  case STIC_TYPE_ELSEWHERE:
+    break;
   }
 }
 
 /* ---- documents --------------------------------------------------------------------------- */
 
-static int64_t line_at(const char *text, size_t offset)
+static void on_yaml_problem(void *context, stic_status status, int64_t line, const char *message)
 {
-  int64_t line = 1;
-
-  for (size_t i = 0; i < offset; i++)
-    line += text[i] == '\n';
-  return line;
-}
-
-static void syntax_error(reading *r, const yaml_parser_t *parser, const char *text, size_t length)
-{
-  if (parser->error == YAML_MEMORY_ERROR) {
-    tell(r, false, STIC_NO_MEMORY, 0, "out of memory");
-  } else if (parser->error == YAML_READER_ERROR) {
-    const size_t at = parser->problem_offset < length ? parser->problem_offset : length;
-
-    BAD(r, line_at(text, at), "not valid text: %s; expected YAML in UTF-8", parser->problem);
-  } else {
-    BAD(r, (int64_t)parser->problem_mark.line + 1, "not valid YAML: %s%s%s",
-        parser->problem ? parser->problem : "unknown problem", parser->context ? ", " : "",
-        parser->context ? parser->context : "");
-  }
-}
-
-/* How a token changes the depth of nesting. */
-static int nesting_step(yaml_token_type_t type)
-{
-  switch (type) {
-  case YAML_FLOW_SEQUENCE_START_TOKEN:
-  case YAML_FLOW_MAPPING_START_TOKEN:
-  case YAML_BLOCK_SEQUENCE_START_TOKEN:
-  case YAML_BLOCK_MAPPING_START_TOKEN:
-    return 1;
-  case YAML_FLOW_SEQUENCE_END_TOKEN:
-  case YAML_FLOW_MAPPING_END_TOKEN:
-  case YAML_BLOCK_END_TOKEN:
-    return -1;
-  default:
-    return 0;
-  }
-}
-
-/* Anchors, aliases and tags leave no mark in a loaded document, so they are looked for in the
- * tokens. Syntax errors are left to the loader. */
-static bool has_only_plain_features(reading *r, const char *text, size_t length)
-{
-  yaml_parser_t parser;
-  yaml_token_t token;
-  bool good = true, more = true;
-  int depth = 0;
-
-  if (!yaml_parser_initialize(&parser)) {
-    tell(r, false, STIC_NO_MEMORY, 0, "out of memory");
-    return false;
-  }
-  yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
-  while (good && more && yaml_parser_scan(&parser, &token)) {
-    const int64_t line = (int64_t)token.start_mark.line + 1;
-
-    more = token.type != YAML_STREAM_END_TOKEN && token.type != YAML_NO_TOKEN;
-    depth += nesting_step(token.type);
-    good = false;
-    if (depth > NESTING_MAX)
-      BAD(r, line, "lists and mappings are nested deeper than %d; expected a scene", NESTING_MAX);
-    else if (token.type == YAML_ALIAS_TOKEN)
-      BAD(r, line, "found an alias (*%.40s); expected the value itself", token.data.alias.value);
-    else if (token.type == YAML_ANCHOR_TOKEN)
-      BAD(r, line, "found an anchor (&%.40s); expected a plain value", token.data.anchor.value);
-    else if (token.type == YAML_TAG_TOKEN || token.type == YAML_TAG_DIRECTIVE_TOKEN)
-      BAD(r, line, "found a tag; expected a plain value");
-    else
-      good = true;
-    yaml_token_delete(&token);
-  }
-  yaml_parser_delete(&parser);
-  return good;
-}
-
-static void refuse_second_document(reading *r, yaml_parser_t *parser, const char *text, size_t length)
-{
-  yaml_document_t second;
-  const yaml_node_t *root;
-
-  if (!yaml_parser_load(parser, &second)) {
-    syntax_error(r, parser, text, length);
-    return;
-  }
-  root = yaml_document_get_root_node(&second);
-  if (root)
-    BAD(r, line_of(root), "found a second document; expected one scene in a file");
-  yaml_document_delete(&second);
+  tell(context, false, status, line, "%s", message);
 }
 
 static void read_text(reading *r, const char *text, size_t length)
 {
-  yaml_parser_t parser;
-  yaml_document_t document;
   const yaml_node_t *root;
 
-  if (!has_only_plain_features(r, text, length))
+  if (!stic_yaml_begin(&r->yaml, text, length))
     return;
-  if (!yaml_parser_initialize(&parser)) {
-    tell(r, false, STIC_NO_MEMORY, 0, "out of memory");
-    return;
-  }
-  yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
-  if (!yaml_parser_load(&parser, &document)) {
-    syntax_error(r, &parser, text, length);
-    yaml_parser_delete(&parser);
-    return;
-  }
-  root = yaml_document_get_root_node(&document);
-  r->document = &document;
+  root = stic_yaml_root(&r->yaml);
   if (root) {
     read_value(r, STIC_KEY_ROOT, -1, root);
-    refuse_second_document(r, &parser, text, length);
+    stic_yaml_refuse_more(&r->yaml);
   } else {
     r->origins[STIC_KEY_ROOT].bad = true;
     BAD(r, 1, "the file is empty; expected a scene that begins with 'stiction: %d'", FORMAT_VERSION);
   }
-  r->document = NULL;
-  yaml_document_delete(&document);
-  yaml_parser_delete(&parser);
-}
-
-/* ---- files ------------------------------------------------------------------------------- */
-
-static bool read_all(int fd, char *text, size_t *length)
-{
-  *length = 0;
-  while (*length <= FILE_MAX_BYTES) {
-    const ssize_t n = read(fd, text + *length, (size_t)FILE_MAX_BYTES + 1 - *length);
-
-    if (n < 0 && errno == EINTR)
-      continue;
-    if (n < 0)
-      return false;
-    if (n == 0)
-      break;
-    *length += (size_t)n;
-  }
-  return true;
-}
-
-static bool text_is_usable(reading *r, const char *text, size_t length)
-{
-  const char *zero = memchr(text, '\0', length);
-
-  if (length > FILE_MAX_BYTES)
-    BAD(r, 0, "the file has more than %d bytes; expected a scene", FILE_MAX_BYTES);
-  else if (length >= 2 && (memcmp(text, "\xff\xfe", 2) == 0 || memcmp(text, "\xfe\xff", 2) == 0))
-    BAD(r, 1, "the file is UTF-16; expected UTF-8");
-  else if (zero)
-    BAD(r, line_at(text, (size_t)(zero - text)), "found a zero byte; expected text");
-  else
-    return true;
-  return false;
+  stic_yaml_end(&r->yaml);
 }
 
 static void read_file(reading *r)
 {
-  char *text = malloc(FILE_MAX_BYTES + 1);
-  const int fd = text ? open(r->path, O_RDONLY | O_CLOEXEC) : -1;
   size_t length;
+  char *text = stic_yaml_read_file(&r->yaml, r->path, &length);
 
-  if (!text)
-    tell(r, false, STIC_NO_MEMORY, 0, "out of memory");
-  else if (fd < 0)
-    BAD(r, 0, "cannot open the scene: %s", strerror(errno));
-  else if (!read_all(fd, text, &length))
-    BAD(r, 0, "cannot read the scene: %s", strerror(errno));
-  else if (text_is_usable(r, text, length))
+  if (text)
     read_text(r, text, length);
-  if (fd >= 0)
-    close(fd);
   free(text);
 }
 
@@ -714,34 +513,18 @@ static bool find_key(reading *r, const char *text, stic_key *key, int *surface)
 static void apply_override(reading *r)
 {
   const char *value = r->override->value;
-  const size_t length = strlen(value);
-  yaml_parser_t parser;
-  yaml_document_t document;
   const yaml_node_t *root;
   stic_key key;
   int surface;
 
-  if (!find_key(r, r->override->key, &key, &surface) || !has_only_plain_features(r, value, length))
+  if (!find_key(r, r->override->key, &key, &surface) || !stic_yaml_begin(&r->yaml, value, strlen(value)))
     return;
-  if (!yaml_parser_initialize(&parser)) {
-    tell(r, false, STIC_NO_MEMORY, 0, "out of memory");
-    return;
-  }
-  yaml_parser_set_input_string(&parser, (const unsigned char *)value, length);
-  if (!yaml_parser_load(&parser, &document)) {
-    syntax_error(r, &parser, value, length);
-    yaml_parser_delete(&parser);
-    return;
-  }
-  root = yaml_document_get_root_node(&document);
-  r->document = &document;
+  root = stic_yaml_root(&r->yaml);
   if (root)
     read_value(r, key, surface, root);
   else
     BAD(r, 0, "no value; expected KEY=VALUE");
-  r->document = NULL;
-  yaml_document_delete(&document);
-  yaml_parser_delete(&parser);
+  stic_yaml_end(&r->yaml);
 }
 
 /* ---- the whole --------------------------------------------------------------------------- */
@@ -942,6 +725,9 @@ stic_status stic_scene_read_all(const char *path, const stic_override *overrides
   }
   stic_scene_init(draft);
   r->path = path;
+  r->yaml.what = "scene";
+  r->yaml.problem = on_yaml_problem;
+  r->yaml.context = r;
   r->scene = draft;
   r->report = report;
   r->context = context;

@@ -10,9 +10,9 @@ const charts = (function () {
   function describe(m) {
     const list = [
       {title: "x", unit: "m", digits: 4, series: [
-        {name: "hand", color: "--hand", dash: [5, 3], y: m.hand_x}, {name: "object", color: "--object", y: m.x}]},
+        {name: "hand", color: "--hand", dash: [5, 3], y: m.hand_x}, {name: m.objectName, color: "--object", y: m.objectX}]},
       {title: "y", unit: "m", digits: 4, series: [
-        {name: "hand", color: "--hand", dash: [5, 3], y: m.hand_y}, {name: "object", color: "--object", y: m.y}]},
+        {name: "hand", color: "--hand", dash: [5, 3], y: m.hand_y}, {name: m.objectName, color: "--object", y: m.objectY}]},
       {title: "angle", unit: "°", digits: 2, series: [
         {name: "hand", color: "--hand", dash: [5, 3], y: m.handAngle}, {name: "object", color: "--object", y: m.angle}]},
       {title: "normal force", unit: "N", digits: 2, floor: 0,
@@ -20,7 +20,7 @@ const charts = (function () {
       {title: "friction", unit: "N", digits: 2, series: [].concat(...m.surfaces.map(s => [
         {name: s.name, color: s.color, y: s.friction}])).concat(m.surfaces.length > 2 ? [] : [].concat(...m.surfaces.map((s, i) => [
         {name: "± limit", color: s.color, y: s.limit, thin: true, quiet: i > 0}, {name: "", color: s.color, y: s.limit.map(v => v === null ? null : -v), thin: true, quiet: true}])))},
-      {title: "friction ÷ static limit", unit: "", digits: 2, range: [0, 1.12], line: 1,
+      {title: "friction ÷ static limit", unit: "", digits: 2, range: [0, 1.38], line: 1,
        series: m.surfaces.map(s => ({name: s.name, color: s.color, y: s.used}))},
     ];
     if (m.surfaces.length === 0)
@@ -39,6 +39,7 @@ const charts = (function () {
     ctx.strokeStyle = css("--slip");
     ctx.globalAlpha = model.slipRows.length > 400 ? 0.12 : 0.28;
     ctx.lineWidth = ratio;
+    ctx.setLineDash([]);
     ctx.beginPath();
     for (const row of model.slipRows) {
       if (model.t[row] < low || model.t[row] > high)
@@ -103,17 +104,17 @@ const charts = (function () {
     const font = "11px system-ui, 'DejaVu Sans', sans-serif";
     const grid = {stroke: () => css("--grid"), width: 1}, ticks = {show: false};
     const stroke = () => css("--muted");
+    const decades = (u, v) => v.map(x => x !== null && Math.abs(Math.log10(x) % 1) < 1e-9 ? x : null);
 
     return {
-      width, height, pxAlign: 1, legend: {show: false}, padding: [4, 4, last ? 0 : 2, 0],
+      width, height, pxAlign: 1, legend: {show: false}, padding: [6, 6, last ? 0 : 6, 0],
       scales: {x: {time: false}, y: {range: yRange(d), distr: d.log ? 3 : 1}},
       cursor: {y: false, points: {show: false}, drag: {x: true, y: false, dist: 5}, sync: {key: syncKey, setSeries: false}},
       axes: [
-        {stroke, grid, ticks, font, size: last ? 34 : 0, values: last ? undefined : (u, v) => v.map(() => ""),
-         label: last ? "time / s" : undefined, labelSize: last ? 15 : 0, labelFont: font, gap: 2, labelGap: -2},
-        {stroke, grid, ticks, font, size: 52, gap: 4, space: d.range ? 22 : 20,
-         splits: d.range ? () => [0, 0.5, 1] : undefined,
-         filter: d.log ? (u, v) => v.map(x => x !== null && Math.abs(Math.log10(x) % 1) < 1e-9 ? x : null) : undefined},
+        {stroke, grid, ticks, font, size: last ? 18 : 0, values: last ? undefined : (u, v) => v.map(() => ""),
+         label: last ? "time / s" : undefined, labelSize: last ? 16 : 0, labelFont: font, gap: 2, labelGap: 0},
+        {stroke, grid: d.log ? {...grid, filter: decades} : grid, ticks, font, size: 52, gap: 4, space: 24,
+         splits: d.range ? () => [0, 0.5, 1] : undefined, filter: d.log ? decades : undefined},
       ],
       series: [{}].concat(d.series.map(s => ({
         stroke: () => css(s.color), width: s.thin ? 1 : 1.6, dash: s.thin ? [2, 3] : s.dash, points: {show: false}, spanGaps: false,

@@ -65,6 +65,12 @@ const stiction = (function () {
     m.angle = degrees(m.theta);
     m.handAngle = degrees(m.hand_theta);
     m.frame_us = run.timing && m.frame_us.length === m.rows && m.rows > 0 ? Array.from(m.frame_us) : null;
+    /* Hand and object are compared where the spring joins them: what is between the curves is its stretch. */
+    const held = Array.from(m.state, v => run.states[v] !== "released");
+    const centred = run.scene.hold === "start" && run.scene.holding_point.every(v => v === 0);
+    m.objectName = centred ? "object" : "object, where held";
+    m.objectX = held.map((h, row) => h ? m.hold_x[row] : null);
+    m.objectY = held.map((h, row) => h ? m.hold_y[row] : null);
     m.slipRows = [];
     m.stateRows = [];
     for (let row = 0; row < m.rows; row++) {

@@ -86,6 +86,9 @@ const tables = (function () {
       ["SHA-256", run.sha256 || "not known (not a file)"],
       ["pictures", run.video.mime ? `${m.frames} frames, ${run.fps} a second, ${(run.video.size / 1e6).toFixed(2)} MB` : run.video.why || "none"],
     ].concat(run.timing ? [["machine", run.timing.machine]] : []).filter(p => p[1]));
+    for (const row of $("provenance").rows)
+      if (row.cells[0].textContent === "SHA-256")
+        row.cells[1].className = "hash";
     $("scene-text").textContent = run.scene_text;
   }
 
@@ -193,11 +196,10 @@ const tables = (function () {
     const r = f.row, mm = v => number(v * 1e3, 2), list = [
       ["state", m.run.states[m.state[r]] + (m.flags[r] & 1 ? ", slipped" : "") + (m.flags[r] & 2 ? ", wedged" : "") +
         (m.flags[r] & 4 ? ", no answer" : "") + (m.flags[r] & 8 ? ", limit reached" : "") + (m.flags[r] & 16 ? ", tracking lost" : "")],
-      ["slips so far", m.slips[r]],
+      ["slips", m.slips[r]],
       ["hand", `${mm(m.hand_x[r])}, ${mm(m.hand_y[r])} mm, ${number(m.handAngle[r], 2)}°`],
       ["object", `${mm(m.x[r])}, ${mm(m.y[r])} mm, ${number(m.angle[r], 2)}°`],
-      ["spring force", `${number(Math.hypot(m.force_x[r], m.force_y[r]), 3)} N`],
-      ["spring moment", `${number(m.moment[r], 4)} N m`],
+      ["spring", `${number(Math.hypot(m.force_x[r], m.force_y[r]), 3)} N, ${number(m.moment[r], 4)} N m`],
     ];
     $("values").innerHTML = list.map(([name]) => `<dt>${name}</dt><dd></dd>`).join("");
     $("values").querySelectorAll("dd").forEach((dd, i) => { dd.textContent = list[i][1]; });
@@ -211,7 +213,8 @@ const tables = (function () {
       const first = cell(row, ""), dot = document.createElement("i");
       dot.className = "swatch";
       dot.style.background = shownSurface ? `var(${shownSurface.color})` : "var(--muted)";
-      first.append(dot, `vertex ${k.vertex} on ${s.name || k.surface}`);
+      first.append(dot, `${k.vertex} on ${s.name || k.surface}`);
+      first.title = `vertex ${k.vertex} on surface ${k.surface}`;
       cell(row, `${number(k.normal, 2)} N`);
       cell(row, `${number(k.friction, 2)} N`);
       const limit = s.mu_static * k.normal, used = limit > 0 ? Math.abs(k.friction) / limit : 0;

@@ -6,5 +6,21 @@
 
 /* `quick`: few repetitions, for tests. */
 int stic_bench_speed(bool quick);
+int stic_bench_render(bool quick);
+
+/* The friction benchmark. `csv` NULL: none. `spoil`: the solver gets this times the friction that the formulas
+ * have; anything but 1 must fail. */
+int stic_bench_validate(bool quick, const char *csv, double spoil);
+
+typedef struct stic_trade_options {
+  bool quick;
+  const char *scene, *trace; /* both NULL: those of traces/, or one built in */
+  const char *csv;           /* NULL: none */
+  const char *plot;          /* NULL: none; else PLOT.png and PLOT.svg */
+  char **set;                /* overrides of the scene */
+} stic_trade_options;
+
+/* What accuracy costs and what it buys. */
+int stic_bench_trade(const stic_trade_options *options);
 
 #endif

@@ -13,7 +13,10 @@
 int stic_cmd_replay(int argc, const char **argv);
 int stic_cmd_run(int argc, const char **argv);
 int stic_cmd_check(int argc, const char **argv);
+int stic_cmd_still(int argc, const char **argv);
 int stic_cmd_bench(int argc, const char **argv);
+int stic_cmd_explain(int argc, const char **argv);
+int stic_cmd_plot(int argc, const char **argv);
 
 /* ---- messages (standard error) ------------------------------------------------------------ */
 

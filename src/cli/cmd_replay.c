@@ -3,6 +3,7 @@
 #include "../io/trace_csv.h"
 #include "cli.h"
 #include "pictures.h"
+#include "review.h"
 #include "session.h"
 
 #include <stdio.h>
@@ -19,6 +20,7 @@ static const stic_cli_usage usage = {
 /* Command-line values beside those of the session. */
 typedef struct replay_options {
   char *folder, *video; /* NULL: no pictures of that kind */
+  char *report;         /* NULL: no page */
   stic_picture_options pictures;
   int fps, force, hud_timing, lenient;
 } replay_options;
@@ -28,6 +30,7 @@ typedef struct replay {
   stic_trace_reader *trace;
   stic_movie *movie;        /* NULL: none asked for, or it failed */
   stic_error movie_error;   /* why it failed; the rest of the run goes on without pictures */
+  stic_review review;
   bool hud_timing;
   stic_error first_skipped; /* with --lenient */
 } replay;
@@ -46,6 +49,7 @@ static void on_problem(void *context, bool warning, const stic_error *problem)
 static void movie_failed(replay *r, const stic_error *err)
 {
   r->movie_error = *err;
+  stic_review_no_video(&r->review, err);
   stic_movie_close(r->movie);
   r->movie = NULL;
 }
@@ -64,6 +68,8 @@ static int finish(replay *r, stic_error *err)
     return pipe_closed ? STIC_EXIT_SIGNAL + SIGPIPE : stic_cli_fail(err);
   if (r->movie && stic_movie_keep(r->movie, err) != STIC_OK)
     movie_failed(r, err);
+  if (stic_review_finish(&r->review, &r->session, err) != STIC_OK)
+    return stic_cli_fail(err);
   if (stic_trace_skipped(r->trace) > 0) {
     char text[800];
 
@@ -92,6 +98,7 @@ static int one_sample(replay *r, const stic_sample *sample, int64_t read_ns, sti
   if (r->movie && stic_movie_before(r->movie, sample->t_ns, err) != STIC_OK)
     movie_failed(r, err);
   frame_ns = stic_session_step(s, sample, read_ns);
+  stic_review_add(&r->review, s, frame_ns);
   if (r->movie)
     stic_movie_observe(r->movie, &s->result);
   if (r->movie && r->hud_timing)
@@ -137,7 +144,7 @@ static stic_status open_movie(replay *r, const replay_options *o, const char *tr
 
   stic_movie_settings_init(&settings);
   settings.folder = o->folder;
-  settings.video = o->video;
+  settings.video = r->review.video ? r->review.video : o->video;
   settings.fps = o->fps;
   settings.force = o->force != 0;
   settings.timed = r->session.timing ? on_stage : NULL;
@@ -160,9 +167,14 @@ static stic_status start_movie(replay *r, const replay_options *o, const stic_se
 {
   stic_status status;
 
-  if (!o->folder && !o->video)
+  if (!o->folder && !o->video && !r->review.video)
     return STIC_OK;
   status = open_movie(r, o, trace, err);
+  /* A page alone does without; what is said of a file or the renderer is no wrong option. */
+  if (status != STIC_OK && !o->folder && !o->video && (status == STIC_CANNOT_WRITE || err->file[0])) {
+    stic_review_no_video(&r->review, err);
+    return STIC_OK;
+  }
   if (status != STIC_CANNOT_WRITE || !(session->log || session->events))
     return status;
   movie_failed(r, err);
@@ -179,6 +191,7 @@ int stic_cmd_replay(int argc, const char **argv)
     {"frames", '\0', POPT_ARG_STRING, &o.folder, 0, "Write pictures DIR/frame_000000.png ...", "DIR"},
     {"video", '\0', POPT_ARG_STRING, &o.video, 0, "Write a video: .mp4 (H.264), .mkv (lossless) or .webm (VP9)",
      "FILE"},
+    {"report", '\0', POPT_ARG_STRING, &o.report, 0, "Write a page to review the run in a browser (HTML, one file)", "FILE"},
     {"fps", '\0', POPT_ARG_INT, &o.fps, 0, "Pictures per second of the trace, 1 to 1000 (default 31)", "N"},
     {"force", '\0', POPT_ARG_NONE, &o.force, 0, "Remove older pictures from DIR", NULL},
     STIC_PICTURE_OPTIONS(&o.pictures),
@@ -191,13 +204,15 @@ int stic_cmd_replay(int argc, const char **argv)
   int code = stic_cli_parse(&usage, table, argc, argv, &args);
 
   if (code < 0) {
-    const char *const outputs[] = {session.log, session.events, session.timing, o.video};
+    const char *const outputs[] = {session.log, session.events, session.timing, o.video, o.report};
     const stic_trace_options trace_options = {o.lenient != 0, on_problem, &r};
+    const stic_review_source source = {args.positions[0], args.positions[1], argc, argv, o.fps, o.video};
 
     code = -1;
-    if (stic_cli_check_paths(args.positions, 2, outputs, 4, &err) != STIC_OK ||
+    if (stic_cli_check_paths(args.positions, 2, outputs, 5, &err) != STIC_OK ||
         stic_session_open(&r.session, &session, args.positions[0], "trace", args.positions[1], &err) != STIC_OK ||
         stic_trace_open(args.positions[1], &trace_options, &r.trace, &err) != STIC_OK ||
+        stic_review_open(&r.review, o.report, &r.session, &source, &err) != STIC_OK ||
         start_movie(&r, &o, &session, args.positions[1], &err) != STIC_OK)
       code = stic_cli_fail(&err);
     if (code < 0)
@@ -205,6 +220,7 @@ int stic_cmd_replay(int argc, const char **argv)
     if (code < 0)
       code = finish(&r, &err);
     stic_movie_close(r.movie);
+    stic_review_close(&r.review);
     stic_trace_close(r.trace);
     stic_session_close(&r.session);
   }
@@ -213,5 +229,6 @@ int stic_cmd_replay(int argc, const char **argv)
   stic_picture_options_free(&o.pictures);
   free(o.folder);
   free(o.video);
+  free(o.report);
   return code;
 }

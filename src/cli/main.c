@@ -11,10 +11,13 @@ typedef struct command {
 } command;
 
 static const command commands[] = {
-  {"replay", stic_cmd_replay, "solve a trace, as fast as it can: log, events, timing, pictures"},
+  {"replay", stic_cmd_replay, "solve a trace, as fast as it can: log, events, timing, pictures, a page"},
   {"run", stic_cmd_run, "solve a device's samples in real time"},
   {"check", stic_cmd_check, "tell all errors and warnings of a scene and a trace"},
-  {"bench", stic_cmd_bench, "measure: speed"},
+  {"explain", stic_cmd_explain, "say which parts of the model a scene can need, and why"},
+  {"still", stic_cmd_still, "one moment of a trace as a picture, or a contact sheet of the telling ones"},
+  {"plot", stic_cmd_plot, "figures 9 to 12 of the paper from a log"},
+  {"bench", stic_cmd_bench, "measure: speed, pictures, friction against closed forms, accuracy against cost"},
 };
 
 #define COMMAND_COUNT (sizeof commands / sizeof commands[0])

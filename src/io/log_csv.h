@@ -50,5 +50,7 @@ stic_status stic_log_next(stic_log_reader *reader, stic_result *result, bool *mo
 
 /* Value of a provenance line, "" if there is none; lives as long as the reader. */
 const char *stic_log_provenance_value(const stic_log_reader *reader, const char *key);
+/* The same for the n-th line (from 0) of that key: "set" may occur several times. */
+const char *stic_log_provenance_nth(const stic_log_reader *reader, const char *key, int n);
 
 #endif

@@ -1,14 +1,55 @@
-/* Solver against oracle on random scenes and hand paths. Usage: compare frame|event SEED COUNT [-v] */
+/* Solver against oracle on random scenes and hand paths.
+ *   compare frame|event [--seed S] [--count N] [--frames N] [--verbose]
+ *
+ * At level frame both must agree to 1e-9 size at every row. At level event a path can magnify rounding (a
+ * grazing touch happens or not), so where they part by more than 1e-7 size the oracle is asked again with finer
+ * steps, and with hands that are off by some ulp: if it then parts from itself as much, the path has no answer to
+ * compare with (an ambiguous case); if not, the solver is wrong. Ambiguous cases may not be many. Cases are over
+ * at their first difference.
+ *
+ * It also proves what it covered: every rule of the oracle and, through the cores linked here with a look inside,
+ * every decision of the solver must have been met, but for the exceptions that are named. */
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "inside.h"
 #include "oracle.h"
 #include "random_scene.h"
+#include "statics/core.h"
 
-static void to_oracle(const stic_scene *s, orc_scene *o) {
+inside inside_report;
+
+enum { FRAMES_MAX = 200 };
+
+static const char *const RULES[ORC_R_COUNT] = {
+  "free",         "free opened", "turn",       "turn corner", "turn skipped", "hold touch", "snap",
+  "1 open",       "1 slide",     "2 edge",     "2 parallel",  "2 trammel",    "3 turn",     "3 pair",
+  "3 slide",      "3 all",       "3 many",     "3 second",    "3 after",      "4 flow",     "slide touch",
+  "slide N zero", "slide flip",  "slide jump", "goes on",     "stick",        "window",     "double"};
+
+static const char *const DECISIONS[] = {"rest",          "open single", "slide single", "slide edge",
+                                        "slide trammel", "open turn",   "open pair",    "open slide",
+                                        "open all",      "flow",        "snap",         "slide on"};
+enum { DECISION_COUNT = sizeof DECISIONS / sizeof DECISIONS[0] };
+
+/* What a level's paths need not meet. Level frame knows nothing of the hand's path. At level event contacts open one
+ * after the other, so choices that open several, and what wants a load far outside the cones, are met by frame. A
+ * double event inside one of the oracle's steps, and a trammel whose force balance straddles a reversal of its
+ * motion, are too rare for random paths: the oracle's own test has the first; the second is met by none. */
+static const unsigned NOT_AT_FRAME =
+  ORC_R_GOES_ON | ORC_R_STICK | ORC_R_WINDOW | ORC_R_DOUBLE | ORC_R_SLIDE_JUMP;
+static const unsigned NOT_AT_EVENT = ORC_R_3_PAIR | ORC_R_3_MANY | ORC_R_3_SECOND | ORC_R_4_FLOW |
+                                     ORC_R_SLIDE_FLIP | ORC_R_SLIDE_JUMP | ORC_R_DOUBLE;
+static const unsigned DECISION_NOT_AT_FRAME = STIC_DECISION_SNAP | STIC_DECISION_SLIDE_ON;
+static const unsigned DECISION_NOT_AT_EVENT = STIC_DECISION_OPEN_PAIR | STIC_DECISION_FLOW;
+
+static void to_oracle(const stic_scene *s, orc_scene *o)
+{
   memset(o, 0, sizeof *o);
   o->nv = s->vertex_count;
-  for (int i = 0; i < o->nv; i++) o->v[i][0] = s->vertices[i][0], o->v[i][1] = s->vertices[i][1];
+  for (int i = 0; i < o->nv; i++)
+    o->v[i][0] = s->vertices[i][0], o->v[i][1] = s->vertices[i][1];
   o->k_p = s->stiffness, o->k_theta = s->rotational_stiffness;
   o->hold[0] = s->holding_point[0], o->hold[1] = s->holding_point[1];
   o->ns = s->surface_count;
@@ -19,73 +60,225 @@ static void to_oracle(const stic_scene *s, orc_scene *o) {
   }
 }
 
-int main(int argc, char **argv) {
-  if (argc < 4) return 2;
-  int event = !strcmp(argv[1], "event"), verbose = argc > 4;
-  unsigned long seed0 = strtoul(argv[2], 0, 10), count = strtoul(argv[3], 0, 10);
-  unsigned covered = 0;
-  if (getenv("ORC_STEP")) orc_step_factor = atof(getenv("ORC_STEP"));
-  long frames = 0, bad_cases = 0, flow = 0, noanswer = 0, limits = 0;
+typedef struct hand_pose {
+  double x, y, phi;
+} hand_pose;
+
+typedef struct oracle_run {
+  orc_scene scene;
+  orc_state state;
+  orc_report report;
+  hand_pose last;
+} oracle_run;
+
+static void oracle_start(oracle_run *o, const stic_scene *s)
+{
+  memset(o, 0, sizeof *o);
+  to_oracle(s, &o->scene);
+  orc_init(&o->scene, &o->state, s->x, s->y, s->angle);
+}
+
+static void oracle_step(oracle_run *o, bool event, bool first, hand_pose h)
+{
+  if (first || !event)
+    orc_relax(&o->scene, &o->state, h.x, h.y, h.phi, &o->report);
+  else
+    orc_move_event(&o->scene, &o->state, o->last.x, o->last.y, o->last.phi, h.x, h.y, h.phi, &o->report);
+  o->last = h;
+}
+
+static double apart(const double a[3], const orc_state *b, double size)
+{
+  return fmax(fabs(a[0] - b->x), fmax(fabs(a[1] - b->y), fabs(a[2] - b->theta) * 0.1)) / size;
+}
+
+/* Is every contact that only one of them has within 1e-11 size of touching? */
+static bool only_rounding_touches(const oracle_run *o, const stic_result *r, double size)
+{
+  double c = cos(r->theta), s = sin(r->theta);
+  for (int v = 0; v < o->scene.nv; v++)
+    for (int k = 0; k < o->scene.ns; k++) {
+      bool mine = false, its = false;
+      for (int i = 0; i < r->contact_count; i++)
+        mine |= r->contacts[i].vertex == v && r->contacts[i].surface == k;
+      for (int i = 0; i < o->state.nc; i++)
+        its |= o->state.c[i].vertex == v && o->state.c[i].surface == k;
+      if (mine == its)
+        continue;
+      const double *b = o->scene.v[v], *p = o->scene.s[k].point, *n = o->scene.s[k].normal;
+      double gap = (r->x + c * b[0] - s * b[1] - p[0]) * n[0] + (r->y + s * b[0] + c * b[1] - p[1]) * n[1];
+      if (!(fabs(gap) <= 1e-11 * size))
+        return false;
+    }
+  return true;
+}
+
+static bool same_contacts(const oracle_run *o, const stic_result *r)
+{
+  bool same = o->state.nc == r->contact_count;
+  for (int i = 0; same && i < r->contact_count; i++) {
+    bool found = false;
+    for (int k = 0; k < o->state.nc; k++)
+      found |=
+        o->state.c[k].vertex == r->contacts[i].vertex && o->state.c[k].surface == r->contacts[i].surface;
+    same = found;
+  }
+  return same;
+}
+
+static void print_contacts(const oracle_run *o, const stic_result *r)
+{
+  printf("   oracle %.12g %.12g %.12g", o->state.x, o->state.y, o->state.theta);
+  for (int k = 0; k < o->state.nc; k++)
+    printf(" [v%d s%d]", o->state.c[k].vertex, o->state.c[k].surface);
+  printf("\n   solver %.12g %.12g %.12g", r->x, r->y, r->theta);
+  for (int k = 0; k < r->contact_count; k++)
+    printf(" [v%d s%d]", r->contacts[k].vertex, r->contacts[k].surface);
+  printf(" flags %u\n", r->flags);
+}
+
+/* How far the oracle is from itself at `row`, at the most: finer steps, and hands that are off by some ulp. */
+static double oracle_apart_from_itself(const stic_scene *s, const hand_pose *hands, int row,
+                                       const double pose[3], double size, double enough, bool event)
+{
+  static const double factors[] = {1, 0.5, 0.37, 0.21, 1, 1, 1, 1, 1, 1};
+  double most = 0;
+  for (size_t k = 0; k < sizeof factors / sizeof factors[0] && most < enough; k++) {
+    rng r = {k};
+    oracle_run o;
+    orc_step_factor = factors[k];
+    oracle_start(&o, s);
+    for (int i = 0; i <= row; i++) {
+      hand_pose h = hands[i];
+      double off = k >= 4 ? 4e-16 : 0;
+      h.x += off * (rng_below(&r, 9) - 4), h.y += off * (rng_below(&r, 9) - 4),
+        h.phi += off * (rng_below(&r, 9) - 4);
+      oracle_step(&o, event, i == 0, h);
+    }
+    most = fmax(most, apart(pose, &o.state, size));
+  }
+  orc_step_factor = 1;
+  return most;
+}
+
+int main(int argc, char **argv)
+{
+  bool event = argc > 1 && !strcmp(argv[1], "event"), verbose = false;
+  uint64_t seed0 = 1, count = 100;
+  int frames = 30;
+  if (argc < 2 || (!event && strcmp(argv[1], "frame")))
+    return fprintf(stderr, "compare frame|event ...\n"), 2;
+  for (int i = 2; i < argc; i++) {
+    const char *value = i + 1 < argc ? argv[i + 1] : "";
+    if (!strcmp(argv[i], "--verbose"))
+      verbose = true;
+    else if (!strcmp(argv[i], "--seed"))
+      seed0 = strtoull(value, NULL, 10), i++;
+    else if (!strcmp(argv[i], "--count"))
+      count = strtoull(value, NULL, 10), i++;
+    else if (!strcmp(argv[i], "--frames"))
+      frames = atoi(value), i++;
+    else
+      return fprintf(stderr, "unknown: %s\n", argv[i]), 2;
+  }
+  if (frames < 1 || frames > FRAMES_MAX)
+    return fprintf(stderr, "--frames from 1 to %d\n", FRAMES_MAX), 2;
+  const double tolerance = event ? 1e-7 : 1e-9;
+  unsigned rules = 0;
+  long rows = 0, wrong = 0, ambiguous = 0, touches = 0, unfinished = 0;
   double worst = 0;
-  for (unsigned long seed = seed0; seed < seed0 + count; seed++) {
+  for (uint64_t seed = seed0; seed < seed0 + count; seed++) {
     random_case c;
-    random_case_init(&c, seed);
+    hand_pose hands[FRAMES_MAX];
+    oracle_run o;
     stic_settings settings;
-    stic_settings_init(&settings);
-    settings.level = event ? STIC_LEVEL_EVENT : STIC_LEVEL_FRAME;
     stic_sim *sim;
     stic_error err;
-    if (stic_sim_create(&c.scene, &settings, &sim, &err)) { printf("seed %lu: %s\n", seed, err.message); continue; }
-    orc_scene os;
-    orc_state state;
-    orc_report rep = {0};
-    to_oracle(&c.scene, &os);
-    orc_init(&os, &state, c.scene.x, c.scene.y, c.scene.angle);
+    random_any_init(&c, seed);
+    stic_settings_init(&settings);
+    settings.level = event ? STIC_LEVEL_EVENT : STIC_LEVEL_FRAME;
+    if (stic_sim_create(&c.scene, &settings, &sim, &err)) {
+      printf("seed %" PRIu64 ": %s\n", seed, err.message);
+      wrong++;
+      continue;
+    }
+    oracle_start(&o, &c.scene);
+    double size = stic_scene_size(&c.scene);
     rng r = {seed + 77};
-    double px = 0, py = 0, pphi = 0;
-    for (int i = 0; i < 30; i++) {
-      if (i) random_case_move(&c, &r);
-      stic_sample sample = {(int64_t)i * 32258065, {c.x, c.y, 0}, {0, 0, sin(c.phi / 2), cos(c.phi / 2)}, 1, false};
+    for (int i = 0; i < frames; i++) {
+      if (i)
+        random_case_move(&c, &r);
+      stic_sample sample = {
+        (int64_t)i * 32258065, {c.x, c.y, 0}, {0, 0, sin(c.phi / 2), cos(c.phi / 2)}, 1, false};
       stic_result res;
       stic_sim_step(sim, &sample, &res);
-      double phi = res.hand_theta;
-      rep.rules = 0;
-      int flow0 = rep.flow_stages;
-      double before[3] = {state.x, state.y, state.theta};
-      int nc0 = state.nc; orc_contact cc0[4]; for (int k = 0; k < nc0 && k < 4; k++) cc0[k] = state.c[k];
-      if (i == 0 || !event) orc_relax(&os, &state, c.x, c.y, phi, &rep);
-      else orc_move_event(&os, &state, px, py, pphi, c.x, c.y, phi, &rep);
-      covered |= rep.rules;
-      frames++;
-      double e = fmax(fabs(res.x - state.x), fmax(fabs(res.y - state.y), fabs(res.theta - state.theta) * 0.1)) / stic_scene_size(&c.scene);
-      if (rep.flow_stages > flow0) { flow++; }
-      noanswer += (res.flags & STIC_FLAG_NO_ANSWER) != 0;
-      limits += (res.flags & STIC_FLAG_LIMIT) != 0;
-      if ((res.flags & STIC_FLAG_LIMIT) && verbose) printf("limit: seed %lu frame %d oracle limit %d stages\n", seed, i, rep.limit);
-      if (e > (event ? 1e-7 : 1e-9) || state.nc != res.contact_count) {
-        bad_cases++;
-        if (verbose) {
-          printf("seed %lu frame %d kind %d err %.3g flags %u rules %x state %s nc %d/%d flow %d\n", seed, i, c.kind, e, res.flags, rep.rules, stic_state_name(res.state), res.contact_count, state.nc, rep.flow_stages - flow0);
-          printf("   hand %.9g %.9g %.9g -> %.9g %.9g %.9g\n", px, py, pphi, c.x, c.y, phi);
-          printf("   before %.9g %.9g %.9g", before[0], before[1], before[2]);
-          for (int k = 0; k < nc0; k++) printf(" [v%d s%d]", cc0[k].vertex, cc0[k].surface);
-          printf("\n   oracle %.9g %.9g %.9g", state.x, state.y, state.theta);
-          for (int k = 0; k < state.nc; k++) printf(" [v%d s%d %.6g %.6g]", state.c[k].vertex, state.c[k].surface, state.c[k].place[0], state.c[k].place[1]);
-          printf("\n   solver %.9g %.9g %.9g", res.x, res.y, res.theta);
-          for (int k = 0; k < res.contact_count; k++) printf(" [v%d s%d %.6g %.6g N %.4g T %.4g]", res.contacts[k].vertex, res.contacts[k].surface, res.contacts[k].x, res.contacts[k].y, res.contacts[k].normal, res.contacts[k].friction);
-          int n; const stic_event *ev = stic_sim_events(sim, &n);
-          printf("\n   events:");
-          for (int k = 0; k < n && k < 12; k++) printf(" %s v%d s%d %.4g @%.6f;", stic_event_name(ev[k].kind), ev[k].vertex, ev[k].surface, ev[k].length, (ev[k].t*1e9 - (i-1)*32258065.)/32258065.);
-          printf("  slips %lld/%d\n", (long long)res.slips, rep.slips);
-        }
+      hands[i].x = c.x, hands[i].y = c.y, hands[i].phi = res.hand_theta;
+      int unfinished_before = o.report.limit + o.report.no_answer;
+      oracle_step(&o, event, i == 0, hands[i]);
+      rules |= o.report.rules;
+      rows++;
+      /* Neither claims an answer. */
+      if ((res.flags & (STIC_FLAG_NO_ANSWER | STIC_FLAG_LIMIT)) &&
+          o.report.limit + o.report.no_answer > unfinished_before) {
+        unfinished++;
         break;
       }
-      worst = fmax(worst, e);
-      px = c.x, py = c.y, pphi = phi;
+      double pose[3] = {res.x, res.y, res.theta}, off = apart(pose, &o.state, size);
+      bool same = only_rounding_touches(&o, &res, size);
+      bool disputed = same && !same_contacts(&o, &res);
+      /* A disputed touch is one of a gap that grazes zero: rounding d of it moves the pose by sqrt(d), d = 1e-17. */
+      if (same && off <= (disputed ? fmax(tolerance, 1e-8) : tolerance)) {
+        touches += disputed;
+        if (disputed)
+          break; /* what follows may depend on it */
+        worst = fmax(worst, off);
+        continue;
+      }
+      double itself = 0;
+      if (event || verbose) {
+        double at[3] = {o.state.x, o.state.y, o.state.theta};
+        itself = oracle_apart_from_itself(&c.scene, hands, i, at, size, off / 10, event);
+      }
+      bool excused = event && itself >= off / 10 && itself > tolerance / 10;
+      if (excused)
+        ambiguous++;
+      else
+        wrong++;
+      if (!excused || verbose) {
+        printf("seed %" PRIu64 " row %d: %s%.3g sizes apart, the oracle from itself %.3g, rules %x\n", seed,
+               i, excused ? "ambiguous, " : "", off, itself, o.report.rules);
+        print_contacts(&o, &res);
+        printf("   replay: compare %s --seed %" PRIu64 " --count 1 --frames %d --verbose\n", argv[1], seed,
+               i + 1);
+      }
+      break;
     }
     stic_sim_destroy(sim);
   }
-  printf("%s: %lu cases, %ld frames, %ld cases differ, worst agreeing %.3g, oracle flow in %ld frames, rules %x, no answer %ld, limit %ld\n",
-         argv[1], count, frames, bad_cases, worst, flow, covered, noanswer, limits);
-  return bad_cases != 0;
+  printf("%s: %" PRIu64
+         " cases, %ld rows, %ld wrong, %ld ambiguous, %ld with a touch at rounding distance, %ld without an "
+         "answer, worst agreeing %.3g sizes\n",
+         argv[1], count, rows, wrong, ambiguous, touches, unfinished, worst);
+  if (ambiguous * 20 > (long)count)
+    printf("too many ambiguous cases\n"), wrong++;
+  if (count < 100)
+    return wrong != 0;
+  /* Coverage */
+  for (int i = 0; i < ORC_R_COUNT; i++) {
+    unsigned bit = 1u << i;
+    if (rules & bit)
+      continue;
+    bool excused = (bit & (event ? NOT_AT_EVENT : NOT_AT_FRAME)) != 0;
+    printf("rule not met: %s%s\n", RULES[i], excused ? " (named as an exception)" : "");
+    wrong += !excused;
+  }
+  for (int i = 0; i < DECISION_COUNT; i++) {
+    unsigned bit = 1u << i;
+    if (inside_report.decisions & bit)
+      continue;
+    bool excused = (bit & (event ? DECISION_NOT_AT_EVENT : DECISION_NOT_AT_FRAME)) != 0;
+    printf("decision not met: %s%s\n", DECISIONS[i], excused ? " (named as an exception)" : "");
+    wrong += !excused;
+  }
+  return wrong != 0;
 }

@@ -1,0 +1,13 @@
+/* 3Dconnexion SpaceMouse family: a cap that gives velocities. spacemouse[:path=,serial=,speed=,turn=] */
+#ifndef STIC_SPACEMOUSE_DRIVER_H
+#define STIC_SPACEMOUSE_DRIVER_H
+
+#include "../hid/hid.h"
+
+extern const stic_driver stic_spacemouse_driver;
+
+/* The driver's open() over another transport, which must outlive the device. */
+stic_status stic_spacemouse_open(const stic_hid_transport *transport, const stic_device_spec *spec,
+                                 stic_device **device, stic_error *err);
+
+#endif
