@@ -73,8 +73,8 @@ extern const stic_hid_transport stic_hid_system;
   {"serial", false, "which device, by its serial number"}, \
   {"raw", false, "record the received reports to a file, for reports of problems"}
 
-/* Lists what the transport has, each path once: of several usages the first on the Generic Desktop page, else the first.
- * Returns the number. Real-time: no. */
+/* Lists what the transport has, each path once: of several usages the first on the Generic Desktop page, else
+ * the first. Returns the number. Real-time: no. */
 int stic_hid_list(const stic_hid_transport *transport, stic_hid_node *nodes, int capacity);
 
 /* The node as match() wants it; its strings are the node's. */
@@ -89,10 +89,10 @@ typedef struct stic_hid_link {
   stic_raw_writer *raw;        /* of the first: where received reports are recorded; NULL: nowhere */
 } stic_hid_link;
 
-/* Opens up to `capacity` of the nodes that `driver` matches (with any of their usages) and the specification's path and serial
- * number allow, all of one product, by their usage's number and unknown usages last. At least one, else
- * STIC_NO_DEVICE. Begins the raw recording if the specification asks for one (STIC_CANNOT_WRITE). Nothing
- * is left open on failure. Real-time: no. */
+/* Opens up to `capacity` of the nodes that `driver` matches (with any of their usages) and the specification's
+ * path and serial number allow, all of one product, by their usage's number and unknown usages last. At least
+ * one, else STIC_NO_DEVICE. Begins the raw recording if the specification asks for one (STIC_CANNOT_WRITE).
+ * Nothing is left open on failure. Real-time: no. */
 stic_status stic_hid_connect(const stic_hid_transport *transport, const stic_driver *driver,
                              const stic_device_spec *spec, stic_hid_link *links, int capacity, int *count,
                              stic_error *err);

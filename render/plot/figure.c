@@ -77,7 +77,7 @@ static void keep_for(const stic_figure *f, quantity of, int which, bool fresh, b
     f->values[i] = of(f, row_at(f, i), which);
   stic_decimate(f->values, f->jump, row_count(f), scratch);
   for (int64_t i = 0; i < row_count(f); i++)
-    f->keep[i] = scratch[i] || (f->keep[i] && !fresh);
+    f->keep[i] = scratch[i] || (!fresh && f->keep[i]);
 }
 
 static void end_block(stic_outfile *out)

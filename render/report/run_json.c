@@ -105,11 +105,12 @@ static json_t *columns_json(const stic_report *r)
 static json_t *timing_json(const stic_timing *timing)
 {
   static const char *const names[] = {"read", "collide", "solve", "render", "encode", "write", "frame"};
-  json_t *stages = json_array();
+  json_t *stages;
   char machine[512];
 
   if (!timing)
     return json_null();
+  stages = json_array();
   for (int i = 0; i <= STIC_STAGE_FRAME; i++) {
     const stic_histogram *h = &timing->stages[i];
 

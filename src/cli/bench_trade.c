@@ -16,7 +16,8 @@
 enum { LEVELS = STIC_TRADE_LEVELS, PRECISIONS = 3, SETTINGS = LEVELS * PRECISIONS, H_MINS = 5 };
 
 #define MOTIONS_MAX 16
-#define ENOUGH 1e-6 /* of the object's size: far below what any tracker resolves */
+#define SAMPLES_MAX 2000 /* of a trace: more say little more, and substep=256 takes its time */
+#define ENOUGH 1e-6      /* of the object's size: far below what any tracker resolves */
 
 /* Position in the list of settings; event is the last level. */
 static int setting_of(int level, int precision)
@@ -446,6 +447,10 @@ static stic_status trade_motion(bench *b)
   printf("\n%s: %d samples in %.2f s, object size %.4g m, h_min %g\n", b->motion.name, b->motion.count,
          (double)(b->motion.samples[b->motion.count - 1].t_ns - b->motion.samples[0].t_ns) * 1e-9, b->size,
          b->settings[REFERENCE].h_min);
+  if (b->motion.count > SAMPLES_MAX) {
+    b->motion.count = SAMPLES_MAX;
+    printf("  only the first %d samples are used\n", SAMPLES_MAX);
+  }
   status = run_all(b);
   if (status == STIC_OK && stic_cli_signal() == 0) {
     print_settings(b);
@@ -474,23 +479,23 @@ static stic_status trade_file(bench *b, const char *scene, const char *trace)
   return status == STIC_OK && b->motion.count > 0 ? trade_motion(b) : status;
 }
 
-/* traces/NAME/scene.yaml with hand.csv beside it. */
+/* traces/NAME/hand.csv with scene.yaml beside it. */
 static stic_status trade_tree(bench *b)
 {
   glob_t found;
   stic_status status = STIC_OK;
 
-  if (glob("traces/*/scene.yaml", 0, NULL, &found) != 0) {
+  if (glob("traces/*/hand.csv", 0, NULL, &found) != 0) {
     globfree(&found);
     status = stic_motion_built_in(&b->motion, &b->err);
     return status == STIC_OK ? trade_motion(b) : status;
   }
   for (size_t i = 0; i < found.gl_pathc && i < MOTIONS_MAX && status == STIC_OK && stic_cli_signal() == 0;
        i++) {
-    const char *scene = found.gl_pathv[i];
-    char trace[512];
+    const char *trace = found.gl_pathv[i];
+    char scene[512];
 
-    snprintf(trace, sizeof trace, "%.*shand.csv", (int)(strlen(scene) - strlen("scene.yaml")), scene);
+    snprintf(scene, sizeof scene, "%.*sscene.yaml", (int)(strlen(trace) - strlen("hand.csv")), trace);
     status = trade_file(b, scene, trace);
   }
   globfree(&found);

@@ -70,6 +70,8 @@ static void choose_video(stic_review *v, const char *asked)
     strcpy(v->why, "no browser shows the kind of video that was asked for");
   else
     v->video = asked ? asked : stic_report_video_path(v->report);
+  if (!v->video && !*v->why)
+    strcpy(v->why, "a page that goes into no file has no place to make one");
 }
 
 stic_status stic_review_open(stic_review *v, const char *path, const stic_session *s, const stic_review_source *source,

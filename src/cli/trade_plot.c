@@ -80,11 +80,12 @@ static void print_panel(FILE *script, const stic_trade_panel *panel, int index)
 static void print_picture(FILE *script, const char *terminal, const char *path,
                           const stic_trade_panel *panels, int count)
 {
-  const int columns = count > 1 ? 2 : 1, rows = (count + columns - 1) / columns;
+  const int columns = count > 4 ? 3 : count > 1 ? 2 : 1, rows = (count + columns - 1) / columns;
   const bool png = strcmp(terminal, "pngcairo") == 0;
 
   fprintf(script, "set terminal %s size %d,%d font 'DejaVu Sans,11' background rgb '#ffffff'%s\nset output ",
-          terminal, columns == 1 ? 860 : 1400, columns == 1 ? 620 : 80 + 480 * rows, png ? "" : " enhanced");
+          terminal, columns == 1 ? 860 : 700 * columns, columns == 1 ? 620 : 80 + 480 * rows,
+          png ? "" : " enhanced");
   print_quoted(script, path);
   fprintf(
     script,

@@ -25,17 +25,19 @@ static void relax(core *c, hand target, double t)
 {
   c->hand = target;
   c->event_time = t;
+  c->full = false;
   c->opened_any = false;
   c->turn_done = false;
   c->happened = false;
   c->sliding = false;
   c->slid_to_zero = false;
   c->longest_slide = 0;
-  c->flow_steps = 0;
   c->noise = gap_noise(c);
   c->report->relaxations++;
   int stage = 0;
   for (; stage < STAGES_MAX; stage++) {
+    if (c->full)
+      break;
     if (hold(c))
       continue;
     forget_opened_that_left(c);

@@ -8,7 +8,7 @@ enum { REVERSALS_MAX = 8 };
 /* The contact has come to a new place on its surface. */
 static void slide_to(core *c, contact *k, vec place)
 {
-  vec on_surface = v_mix(place, -gap_of(c, place, k->surface), c->body.surfaces[k->surface].n);
+  vec on_surface = onto_surface(c, place, k->surface);
   real length = v_length(v_sub(on_surface, k->place));
   k->place = on_surface;
   c->balance.known = false;
@@ -88,7 +88,9 @@ static bool are_parallel(const core *c, int first, int second)
 }
 
 /* Normal forces while both contacts slide in `sense` along the first one's tangent, and their change per
- * distance slid. In an edge the split follows from the moment alone; in a slot friction takes part. */
+ * distance slid. While the tangential force is not balanced yet, moments depend on the point they are taken about.
+ * In an edge that is a point of the surface: friction drops out, and the split is that of statics. Between the walls
+ * of a slot it is the holding point, where the spring's force acts; the normal forces then stay as they are. */
 typedef struct pair_normals {
   real first, second, first_rate, second_rate;
   real drive, drive_rate; /* unbalanced tangential force along the motion */
@@ -98,14 +100,26 @@ static bool normals_along_walls(const core *c, int first, int second, real sense
 {
   const contact *i = &c->contacts[first], *k = &c->contacts[second];
   const surface *a = &c->body.surfaces[i->surface], *b = &c->body.surfaces[k->surface];
-  vec force = spring_force(c), d = v_sub(k->place, i->place), arm = v_sub(holding_point(c), i->place);
-  vec reaction = v_mix(b->n, -sense * b->mu_d, a->t);
-  real lever = v_cross(d, reaction), facing = r_sign(v_dot(a->n, b->n));
-  if (r_abs(lever) <= 16 * REAL_EPSILON * v_length(d) * (1 + b->mu_d))
+  vec force = spring_force(c), g = holding_point(c), d = v_sub(k->place, i->place);
+  real pressed = -v_dot(force, a->n), facing = r_sign(v_dot(a->n, b->n)), lever, scale;
+  if (facing > 0) {
+    scale = v_length(d);
+    lever = v_cross(d, b->n);
+  } else {
+    real lever_first = v_cross(v_sub(i->place, g), v_mix(a->n, -sense * a->mu_d, a->t));
+    real lever_second = v_cross(v_sub(k->place, g), v_mix(b->n, -sense * b->mu_d, a->t));
+    scale = (r_abs(lever_first) + r_abs(lever_second)) + v_length(d);
+    lever = lever_first + lever_second;
+    p->second = -(spring_moment(c) + lever_first * pressed) / lever;
+    p->second_rate = 0;
+  }
+  if (r_abs(lever) <= 16 * REAL_EPSILON * scale)
     return false;
-  p->second = -spring_moment_about(c, i->place) / lever;
-  p->second_rate = sense * v_cross(arm, a->t) / lever;
-  p->first = -v_dot(force, a->n) - facing * p->second;
+  if (facing > 0) {
+    p->second = -spring_moment_about(c, i->place) / lever;
+    p->second_rate = sense * v_cross(v_sub(g, i->place), a->t) / lever;
+  }
+  p->first = pressed - facing * p->second;
   p->first_rate = -facing * p->second_rate;
   p->drive = sense * v_dot(force, a->t) - a->mu_d * p->first - b->mu_d * p->second;
   p->drive_rate = -1 - a->mu_d * p->first_rate - b->mu_d * p->second_rate;

@@ -174,7 +174,7 @@ static real last_sliding(sliding_branch *b, real s_end, int *lost)
 /* Brings a contact to where the sliding has come; recorded as a slip, but no event that starts a window. */
 static void advance_contact(core *c, contact *k, vec place)
 {
-  vec on_surface = v_mix(place, -gap_of(c, place, k->surface), c->body.surfaces[k->surface].n);
+  vec on_surface = onto_surface(c, place, k->surface);
   real length = v_length(v_sub(on_surface, k->place));
   k->place = on_surface;
   c->balance.known = false;

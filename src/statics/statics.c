@@ -100,6 +100,7 @@ static void core_relax(void *memory, stic_hand h, double t, stic_core_report *re
 {
   core *c = memory;
   c->report = report;
+  c->flow_steps = 0;
   c->sliding = false;
   relax(c, hand_in(c, h), t);
   c->window_open = c->happened;
@@ -110,6 +111,7 @@ static void core_follow(void *memory, stic_hand from, stic_hand to, double t_fro
 {
   core *c = memory;
   c->report = report;
+  c->flow_steps = 0;
   hand a = hand_in(c, from), b = hand_in(c, to);
   switch (c->settings.level) {
   case STIC_LEVEL_FRAME: relax(c, b, t_to); break;

@@ -114,12 +114,13 @@ typedef struct core {
   /* during one RELAX */
   hand hand;
   double event_time;
+  bool full;       /* no room for a further contact: nothing may move any more */
   bool opened_any; /* a contact has opened in this RELAX */
   bool turn_done;  /* the last slide reached the zero of its moment: no turn right after it */
   bool happened;   /* touch, opening, slip: an event */
   real longest_slide;
   real slid_on;      /* slid without events since the last sample */
-  int flow_steps;    /* spent on the viscous flow: bounded per RELAX */
+  int flow_steps;    /* spent on the viscous flow: bounded per sample */
   bool slid_to_zero; /* the last action was a slide that reached its balance */
   real slide_sense;  /* ... in this sense (see sliding_sense) */
   real noise;        /* rounding of a gap at these coordinates */
@@ -173,6 +174,7 @@ static bool is_opened(const core *c, int vertex, int on);
 static void forget_opened_that_left(core *c);
 static void add_contact(core *c, int vertex, int on);
 static void remove_contact(core *c, int index);
+static vec onto_surface(const core *c, vec place, int on);
 static void add_touching(core *c); /* every vertex within tolerance of a surface becomes a contact */
 static touch first_touch_moving(core *c, vec travel, real turn);
 

@@ -28,15 +28,22 @@ static void forget_opened_that_left(core *c)
   c->opened_count = kept;
 }
 
-/* The place is the vertex's own, put onto the surface: no rounding of a touch goes into later gaps. */
+/* Takes rounding off a place, so that it cannot add up over many slides. A contact that is farther off (it may be by
+ * 1e-12 of size) keeps its gap: pulling it onto the surface would move the object. */
+static vec onto_surface(const core *c, vec place, int on)
+{
+  real gap = gap_of(c, place, on);
+  return r_abs(gap) <= 4 * c->noise ? v_mix(place, -gap, c->body.surfaces[on].n) : place;
+}
+
 static void add_contact(core *c, int vertex, int on)
 {
   if (c->contact_count == CONTACTS_MAX) {
     c->report->flags |= STIC_FLAG_LIMIT;
+    c->full = true;
     return;
   }
-  vec at = world_vertex(c, vertex);
-  vec place = v_mix(at, -gap_of(c, at, on), c->body.surfaces[on].n);
+  vec place = onto_surface(c, world_vertex(c, vertex), on);
   /* A vertex that already rests on another surface has one place. */
   for (int i = 0; i < c->contact_count; i++)
     if (c->contacts[i].vertex == vertex)

@@ -4,7 +4,6 @@ import subprocess
 import sys
 import tempfile
 
-HERE = os.path.dirname(os.path.abspath(__file__))
 STICTION = os.environ["STICTION"]
 MAKE_PAGE = os.environ.get("MAKE_PAGE", "")
 OUT = os.environ.get("OUT") or tempfile.gettempdir()

@@ -277,8 +277,8 @@ static int run_image(const options *o, uint64_t seed, int level, int precision, 
       there[0] += 2e-16 * (rng_below(&n, 9) - 4), there[1] += 2e-16 * (rng_below(&n, 9) - 4);
       phi += 2e-16 * (rng_below(&n, 9) - 4);
     }
-    if (o->broken && i >= o->frames / 2)
-      there[0] += 1e-6;
+    if (o->broken && i >= o->frames / 2) /* the same in every image */
+      phi += 1e-4;
     stic_sample sample = {
       (int64_t)i * 32258065, {there[0], there[1], 0}, {0, 0, sin(phi / 2), cos(phi / 2)}, 1, false};
     stic_result res;

@@ -83,9 +83,13 @@ static inline void check_row(checker *k, const stic_result *r, const stic_event 
       const double *b = s->vertices[v], *p = s->surfaces[i].point;
       double x = r->x + c * b[0] - si * b[1] - p[0], y = r->y + si * b[0] + c * b[1] - p[1],
              depth = -(x * n[0] + y * n[1]);
-      k->worst_depth = largest_of(k->worst_depth, depth / eps);
-      if (!(depth <= eps))
-        COMPLAIN("1: vertex %d is %.3g below surface %d, allowed %.3g (size %.3g)", v, depth, i, eps,
+      double deep = eps; /* contacts are told from gaps to 1e-12 size */
+      for (int q = 0; q < r->contact_count; q++)
+        if (r->contacts[q].vertex == v && r->contacts[q].surface == i)
+          deep = eps + 1e-12 * k->size;
+      k->worst_depth = largest_of(k->worst_depth, depth / deep);
+      if (!(depth <= deep))
+        COMPLAIN("1: vertex %d is %.3g below surface %d, allowed %.3g (size %.3g)", v, depth, i, deep,
                  k->size);
     }
   }
@@ -130,10 +134,11 @@ static inline void check_row(checker *k, const stic_result *r, const stic_event 
   bool judged = r->state != STIC_RELEASED && !(r->flags & (STIC_FLAG_NO_ANSWER | STIC_FLAG_LIMIT));
   if (judged) {
     /* A place wrong by its rounding is a force wrong by k_p times that; JUDGE itself looks to 1e-12 k_p size. */
-    double allowed = 4096 * k->ulp * largest + k_p * rounding + 1e-12 * k_p * k->size;
+    double allowed =
+      largest_of(4096 * k->ulp, 16 * DBL_EPSILON) * largest + k_p * rounding + 1e-12 * k_p * k->size;
     double off = hypot(fx, fy), off_moment = fabs(moment) / largest_of(k->size, reach);
     /* The arm's rounding times the force, and the angle's times k_theta. */
-    double angle = 4 * largest_of(k->ulp, DBL_EPSILON) * (fabs(r->theta) + fabs(r->hand_theta));
+    double angle = 8 * largest_of(k->ulp, DBL_EPSILON) * (fabs(r->theta) + fabs(r->hand_theta));
     double allowed_moment =
       allowed + largest * rounding / k->size + s->rotational_stiffness * angle / k->size;
     if (r->state == STIC_FREE && s->rotational_stiffness == 0)

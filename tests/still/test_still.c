@@ -279,9 +279,13 @@ static void test_sheet_extremes(void **state)
 
 static void test_bench(void **state)
 {
-  const stic_test_run *run = stic_test_program("bench", "render", "--quick", NULL);
+  const stic_test_run *run;
 
   (void)state;
+  /* The video libraries keep memory each time they are loaded, and cannot be named once they are unloaded. */
+  setenv("ASAN_OPTIONS", "detect_leaks=0", 1);
+  run = stic_test_program("bench", "render", "--quick", NULL);
+  unsetenv("ASAN_OPTIONS");
   expect(run, 0, "");
   stic_test_contains(run->out, "1280x720    good");
   stic_test_contains(run->out, "PNG of quality good");

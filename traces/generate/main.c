@@ -1,4 +1,4 @@
-/* stiction-traces RECIPE > hand.csv: makes a synthetic tracker recording. */
+/* stiction-traces RECIPE [HAND.CSV]: makes a synthetic tracker recording. */
 #include "recipe.h"
 
 #include <inttypes.h>
@@ -129,26 +129,38 @@ static void print_head(const stic_recipe *r)
   printf("t,x,y,z,qx,qy,qz,qw,buttons\n");
 }
 
+/* False if something could not be written. */
+static bool finish(const char *path)
+{
+  if (fflush(stdout) == 0 && !ferror(stdout))
+    return true;
+  perror(path ? path : "standard output");
+  if (path)
+    remove(path);
+  return false;
+}
+
 int main(int argc, char **argv)
 {
   static stic_recipe recipe;
   static maker m;
+  const char *path = argc == 3 ? argv[2] : NULL;
 
-  if (argc != 2 || argv[1][0] == '-') {
-    fprintf(stderr, "usage: stiction-traces RECIPE > hand.csv\n");
+  if (argc < 2 || argc > 3 || argv[1][0] == '-') {
+    fprintf(stderr, "usage: stiction-traces RECIPE [HAND.CSV]\n");
     return 2;
   }
   if (!stic_recipe_read(argv[1], &recipe))
     return 3;
+  if (path && !freopen(path, "w", stdout)) {
+    perror(path);
+    return 5;
+  }
   m.recipe = &recipe;
   stic_random_seed(&m.random, (uint64_t)recipe.seed);
   stic_tremor_start(&m.tremor, (double)(recipe.rate * STEPS_PER_SAMPLE), &m.random);
   m.aim = recipe.start;
   print_head(&recipe);
   follow(&m);
-  if (fflush(stdout) != 0 || ferror(stdout)) {
-    perror("standard output");
-    return 5;
-  }
-  return 0;
+  return finish(path) ? 0 : 5;
 }
