@@ -287,7 +287,7 @@ static real nearest_in_cone(const generators *g, const real target[3], real *wei
       int leaving = -1;
       for (int k = 0; k < n; k++)
         if (trial[k] <= 0) {
-          real part = weights[passive[k]] / (weights[passive[k]] - trial[k]);
+          real drop = weights[passive[k]] - trial[k], part = drop > 0 ? weights[passive[k]] / drop : 0;
           if (leaving < 0 || part < step_length)
             step_length = part, leaving = k;
         }

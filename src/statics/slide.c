@@ -197,8 +197,9 @@ static trammel trammel_path(const core *c, int first, int second, real dir)
   m.e_turn = turn_of(m.e, dir);
   m.path = path_start(c, i->vertex, i->place, a->t, dir);
   /* Takes back the rounding of earlier slides, so that it cannot add up. */
-  if (r_abs(across) > R(1e-3))
-    m.path.origin = v_mix(i->place, -gap_of(c, v_add(i->place, m.e), k->surface) / across, a->t);
+  real off = gap_of(c, v_add(i->place, m.e), k->surface);
+  if (r_abs(across) > R(1e-3) && r_abs(off) <= 4 * c->noise)
+    m.path.origin = v_mix(i->place, -off / across, a->t);
   m.path.xi_c = -v_dot(b->n, m.e) / across;
   m.path.xi_s = -v_dot(b->n, m.e_turn) / across;
   finish_path(c, &m.path);
