@@ -78,7 +78,8 @@ static stic_pose missed(maker *m, const stic_pose *target)
   stic_pose pose = *target;
 
   for (int i = 0; i < STIC_AXES; i++)
-    pose.axis[i] += (i < 3 ? m->recipe->scatter_mm : m->recipe->scatter_degrees) * stic_random_normal(&m->random);
+    pose.axis[i] +=
+      (i < 3 ? m->recipe->scatter_mm : m->recipe->scatter_degrees) * stic_random_normal(&m->random);
   return pose;
 }
 
@@ -101,12 +102,8 @@ static void follow(maker *m)
       target = m->aim;
       reach(m, &target, step->seconds);
       break;
-    case STIC_STEP_PRESS:
-      m->buttons = 1;
-      break;
-    case STIC_STEP_RELEASE:
-      m->buttons = 0;
-      break;
+    case STIC_STEP_PRESS: m->buttons = 1; break;
+    case STIC_STEP_RELEASE: m->buttons = 0; break;
     case STIC_STEP_REPEAT:
       repeat_at = i;
       left = step->count;
@@ -123,7 +120,8 @@ static void print_head(const stic_recipe *r)
 {
   printf("# stiction-trace 1\n# %s\n", r->title);
   printf("# Synthetic: no hand made this. A recipe of minimum-jerk reaches, %g mm and %g degrees (rms) of\n"
-         "# physiological tremor at 8-12 Hz, seen by a tracker of %" PRId64 " samples a second that counts in 0.001 inch\n"
+         "# physiological tremor at 8-12 Hz, seen by a tracker of %" PRId64
+         " samples a second that counts in 0.001 inch\n"
          "# and 0.1 degree. Made by stiction-traces from recipe.txt beside this file.\n",
          r->tremor_mm, r->tremor_degrees, r->rate);
   printf("t,x,y,z,qx,qy,qz,qw,buttons\n");

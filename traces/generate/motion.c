@@ -102,7 +102,8 @@ void stic_tremor_start(stic_tremor *tremor, double hz, stic_random *random)
 void stic_tremor_step(stic_tremor *t, stic_random *random)
 {
   for (int i = 0; i < STIC_AXES; i++) {
-    const double x = t->a1[i] * t->last[i] + t->a2[i] * t->before[i] + t->gain[i] * stic_random_normal(random);
+    const double x =
+      t->a1[i] * t->last[i] + t->a2[i] * t->before[i] + t->gain[i] * stic_random_normal(random);
 
     t->before[i] = t->last[i];
     t->last[i] = x;
@@ -135,9 +136,21 @@ void stic_half_angle(int64_t counts, double *s, double *c)
   const double a = sine(rest), b = cosine(rest);
 
   switch (quarter % 4) {
-  case 0: *s = a; *c = b; break;
-  case 1: *s = b; *c = -a; break;
-  case 2: *s = -a; *c = -b; break;
-  default: *s = -b; *c = a; break;
+  case 0:
+    *s = a;
+    *c = b;
+    break;
+  case 1:
+    *s = b;
+    *c = -a;
+    break;
+  case 2:
+    *s = -a;
+    *c = -b;
+    break;
+  default:
+    *s = -b;
+    *c = a;
+    break;
   }
 }

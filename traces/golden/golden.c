@@ -153,24 +153,27 @@ void stic_golden_here(stic_golden_expected *here)
 
   memset(here, 0, sizeof *here);
   hash_arithmetic(here->arithmetic);
-  snprintf(here->made_on, sizeof here->made_on, "%s; glibc %s; %s%s; FLT_EVAL_METHOD %d", processor(), c_library(),
-           compiler, __VERSION__, (int)FLT_EVAL_METHOD);
+  snprintf(here->made_on, sizeof here->made_on, "%s; glibc %s; %s%s; FLT_EVAL_METHOD %d", processor(),
+           c_library(), compiler, __VERSION__, (int)FLT_EVAL_METHOD);
 }
 
 /* ---- expected.hash ----------------------------------------------------------------------- */
 
-stic_status stic_golden_write_expected(const char *path, const stic_golden_expected *expected, stic_error *err)
+stic_status stic_golden_write_expected(const char *path, const stic_golden_expected *expected,
+                                       stic_error *err)
 {
   stic_outfile *out;
   const stic_status status = stic_outfile_open(path, &out, err);
 
   if (status != STIC_OK)
     return status;
-  stic_outfile_print(out, EXPECTED_FORMAT "\n"
-                     "# Of the log's column header and rows, at accuracy event in precision f64. Holds wherever the C\n"
-                     "# library's functions return the same bits as where it was made; that is what the second hash tells.\n");
-  stic_outfile_print(out, "log-sha256: %s\narithmetic-sha256: %s\nmade-on: %s\n", expected->log, expected->arithmetic,
-                     expected->made_on);
+  stic_outfile_print(
+    out, EXPECTED_FORMAT
+    "\n"
+    "# Of the log's column header and rows, at accuracy event in precision f64. Holds wherever the C\n"
+    "# library's functions return the same bits as where it was made; that is what the second hash tells.\n");
+  stic_outfile_print(out, "log-sha256: %s\narithmetic-sha256: %s\nmade-on: %s\n", expected->log,
+                     expected->arithmetic, expected->made_on);
   return stic_outfile_commit(out, err);
 }
 

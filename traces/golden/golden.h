@@ -37,7 +37,8 @@ typedef struct stic_golden_expected {
  * differ in the last bit between processors with and without FMA and between C libraries. */
 void stic_golden_here(stic_golden_expected *here);
 
-stic_status stic_golden_write_expected(const char *path, const stic_golden_expected *expected, stic_error *err);
+stic_status stic_golden_write_expected(const char *path, const stic_golden_expected *expected,
+                                       stic_error *err);
 stic_status stic_golden_read_expected(const char *path, stic_golden_expected *expected, stic_error *err);
 
 #endif

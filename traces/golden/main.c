@@ -39,7 +39,8 @@ static stic_status write_golden(const char *scene_path, const char *trace_path, 
   if ((status = stic_scene_read(scene_path, NULL, 0, &scene, err)) == STIC_OK &&
       (status = stic_golden_read_trace(trace_path, &trace, err)) == STIC_OK &&
       (status = stic_outfile_open(path, &w->out, err)) == STIC_OK) {
-    stic_outfile_print(w->out, STIC_LOG_FORMAT "\n# one row in %lld, for comparison to 1e-10\n" STIC_LOG_HEADER "\n",
+    stic_outfile_print(w->out,
+                       STIC_LOG_FORMAT "\n# one row in %lld, for comparison to 1e-10\n" STIC_LOG_HEADER "\n",
                        (long long)w->every);
     status = stic_golden_replay(&scene, &settings, &trace, on_row, w, expected.log, err);
     if (status == STIC_OK)
