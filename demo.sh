@@ -20,13 +20,22 @@ for scene in traces/*/scene.yaml; do
   printf '%-22s %6d frames, %4d slips\n' "$name" "$(grep -vc '^[#t]' "out/$name/log.csv")" \
     "$(tail -n 1 "out/$name/log.csv" | cut -d, -f14)"
 done
-build/stiction replay traces/single-vertex/scene.yaml traces/single-vertex/hand.csv --frames out/single-vertex/frames
+show=two-vertex
+build/stiction replay "traces/$show/scene.yaml" "traces/$show/hand.csv" --frames "out/$show/frames" \
+  --video "out/$show/video.mp4" --report "out/$show/report.html" --timing "out/$show/timing.json"
+build/stiction still "traces/$show/scene.yaml" "traces/$show/hand.csv" --sheet --out "out/$show/sheet.png"
+build/stiction plot "out/$show/log.csv" --scene "traces/$show/scene.yaml" --out "out/$show/plots" >/dev/null
 
-cat <<'END'
+cat <<END
 
-What was made:
-  out/*/log.csv               one row per tracker sample: pose, forces, contacts, slips (columns: README.md)
-  out/*/events.csv            every touch, slip, opening and snap
-  out/*/timing.json           what a frame cost, against the 31 Hz of the tracker
-  out/single-vertex/frames/   pictures of the stick-slip trace, 31 a second
+What was made, for every trace of traces/ (its README says what happens there):
+  out/*/log.csv            one row per tracker sample: pose, forces, contacts, slips (columns: README.md)
+  out/*/events.csv         every touch, slip, opening and snap
+  out/*/timing.json        what a frame cost, against the 31 Hz of the tracker
+and for the box that leans on floor and wall:
+  out/$show/report.html    open this in a browser: the video beside its plots, frame by frame
+  out/$show/video.mp4
+  out/$show/frames/        its pictures, 31 a second
+  out/$show/sheet.png      the interesting moments on one page
+  out/$show/plots/         figures 11 and 12 of the paper, as SVG, PDF and PNG
 END

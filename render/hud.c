@@ -269,12 +269,20 @@ static void force_text(double newton, char *text, size_t size)
   strncat(text, " N", size - strlen(text) - 1);
 }
 
+/* What is only the rounding of a balance is shown as the zero that it is. */
+static double without_rounding(double value, double scale)
+{
+  return fabs(value) > 1e-9 * scale ? value : 0;
+}
+
 static void draw_values(const stic_hud *h, const stic_canvas *c, const stic_scene *scene,
                         const stic_history *history)
 {
   const stic_theme *theme = h->theme;
   const stic_result *r = &history->newest;
   totals t = total_of(scene, r);
+  double size = stic_scene_size(scene), force_scale = scene->stiffness * size;
+  double moment = without_rounding(r->moment, force_scale * size);
   const char *doing = doing_words(history, &t);
   bool moving = is_slipping(history) || t.used > 0.95;
   char text[64];
@@ -282,17 +290,16 @@ static void draw_values(const stic_hud *h, const stic_canvas *c, const stic_scen
   stic_canvas_fill(c, h->values, theme->panel);
   stic_canvas_text(c, h->large, h->values.x0 + px(h, 4), h->values.y0, state_words(r->state), theme->text);
   row(h, c, 0, "contact", doing, moving ? theme->friction : theme->text);
-  force_text(t.normal, text, sizeof text);
+  force_text(without_rounding(t.normal, force_scale), text, sizeof text);
   row(h, c, 1, "normal force", r->contact_count ? text : "\xe2\x80\x93", theme->normal);
-  force_text(t.friction, text, sizeof text);
+  force_text(without_rounding(t.friction, force_scale), text, sizeof text);
   row(h, c, 2, "friction", r->contact_count ? text : "\xe2\x80\x93", theme->friction);
   snprintf(text, sizeof text, "%.0f %%", 100 * t.used);
   row(h, c, 3, "friction limit used", r->contact_count ? text : "\xe2\x80\x93",
       moving ? theme->friction : theme->text);
-  force_text(hypot(r->force_x, r->force_y), text, sizeof text);
+  force_text(without_rounding(hypot(r->force_x, r->force_y), force_scale), text, sizeof text);
   row(h, c, 4, "spring force", text, theme->spring);
-  snprintf(text, sizeof text, fabs(r->moment) > 0 && fabs(r->moment) < 0.0005 ? "%.0e N m" : "%.3f N m",
-           r->moment);
+  snprintf(text, sizeof text, moment != 0 && fabs(moment) < 0.0005 ? "%.0e N m" : "%.3f N m", moment);
   row(h, c, 5, "spring moment", text, theme->spring);
   snprintf(text, sizeof text, "%lld", (long long)r->slips);
   row(h, c, 6, "slips", text, theme->text);
