@@ -69,10 +69,10 @@ struct stic_supervisor {
   stic_supervisor_options options;
   stic_watch watch;
   stic_connection state, reported;
-  bool losing;         /* lost and not running again yet: retries are not reported */
-  int64_t lost_ns;     /* since when */
-  bool grip_barred;    /* until it is seen released */
-  bool given;          /* `last` is a sample */
+  bool losing;      /* lost and not running again yet: retries are not reported */
+  int64_t lost_ns;  /* since when */
+  bool grip_barred; /* until it is seen released */
+  bool given;       /* `last` is a sample */
   stic_device_sample last;
   stic_device_counters closed; /* counters of devices closed since */
   stic_error error;
@@ -273,17 +273,13 @@ static bool wait_for_device(stic_supervisor *s, int64_t until_ns)
 static int follow_silence(stic_supervisor *s, stic_device_sample *sample, int64_t now_ns)
 {
   switch (stic_watch_look(&s->watch, now_ns)) {
-  case STIC_WATCH_REST:
-    return come_to_rest(s, sample, now_ns);
-  case STIC_WATCH_STALE:
-    set_state(s, STIC_CONNECTION_STALE);
-    return give_up_hand(s, sample, now_ns);
+  case STIC_WATCH_REST: return come_to_rest(s, sample, now_ns);
+  case STIC_WATCH_STALE: set_state(s, STIC_CONNECTION_STALE); return give_up_hand(s, sample, now_ns);
   case STIC_WATCH_LOST:
     stic_error_set(&s->device->error, STIC_NO_DEVICE, NULL, 0, "nothing heard for %.1f s",
                    (double)(now_ns - s->watch.heard_ns) / 1e9);
     return lose(s, sample, now_ns);
-  case STIC_WATCH_NONE:
-    break;
+  case STIC_WATCH_NONE: break;
   }
   return 0;
 }

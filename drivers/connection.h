@@ -15,7 +15,7 @@
 
 #include "driver.h"
 
-#define STIC_LOST_AFTER_NS INT64_C(2000000000)  /* of silence */
+#define STIC_LOST_AFTER_NS INT64_C(2000000000) /* of silence */
 #define STIC_BACKOFF_MIN_NS INT64_C(500000000)
 #define STIC_BACKOFF_MAX_NS INT64_C(5000000000)
 
@@ -40,11 +40,11 @@ typedef struct stic_watch {
 
 /* Real-time: yes, all of them. */
 void stic_watch_begin(stic_watch *watch, stic_silence silence, int64_t silence_ns);
-void stic_watch_heard(stic_watch *watch, int64_t now_ns);    /* a sample came: also ends the back-off */
+void stic_watch_heard(stic_watch *watch, int64_t now_ns); /* a sample came: also ends the back-off */
 /* What the silence up to now means, each event once. */
 stic_watch_event stic_watch_look(stic_watch *watch, int64_t now_ns);
-int64_t stic_watch_deadline(const stic_watch *watch);        /* when to look; INT64_MAX: never */
-void stic_watch_lost(stic_watch *watch, int64_t now_ns);     /* sets retry_ns and doubles the wait */
+int64_t stic_watch_deadline(const stic_watch *watch);    /* when to look; INT64_MAX: never */
+void stic_watch_lost(stic_watch *watch, int64_t now_ns); /* sets retry_ns and doubles the wait */
 
 /* ---- the supervisor ---------------------------------------------------------------------- */
 
@@ -68,7 +68,8 @@ stic_status stic_supervisor_open(const char *spec_text, const stic_supervisor_op
 /* As stic_device_poll(), times increasing strictly, also across a reconnection. STIC_DRIVER_LOST only when
  * lost for good, with stic_supervisor_error(). Real-time: yes, but for opening a device again, which
  * allocates and happens only while there is none. */
-int stic_supervisor_poll(stic_supervisor *supervisor, int64_t until_ns, stic_device_sample *samples, int capacity);
+int stic_supervisor_poll(stic_supervisor *supervisor, int64_t until_ns, stic_device_sample *samples,
+                         int capacity);
 
 int stic_supervisor_send(stic_supervisor *supervisor, const stic_device_output *output);
 

@@ -31,11 +31,10 @@ static stic_status add_pair(stic_device_spec *spec, char *pair, stic_error *err)
   char *equals = strchr(pair, '=');
 
   if (!*pair || equals == pair)
-    return stic_error_set(err, STIC_USAGE, NULL, 0, "device %.40s: expected NAME:key=value,...",
-                          spec->name);
+    return stic_error_set(err, STIC_USAGE, NULL, 0, "device %.40s: expected NAME:key=value,...", spec->name);
   if (spec->pair_count == STIC_SPEC_PAIRS_MAX)
-    return stic_error_set(err, STIC_USAGE, NULL, 0, "device %.40s: expected at most %d keys",
-                          spec->name, STIC_SPEC_PAIRS_MAX);
+    return stic_error_set(err, STIC_USAGE, NULL, 0, "device %.40s: expected at most %d keys", spec->name,
+                          STIC_SPEC_PAIRS_MAX);
   if (equals)
     *equals = '\0';
   spec->pairs[spec->pair_count].key = pair;
@@ -59,8 +58,7 @@ stic_status stic_spec_parse(const char *text, stic_device_spec *spec, stic_error
   if (rest)
     *rest++ = '\0';
   if (!*spec->name)
-    return stic_error_set(err, STIC_USAGE, NULL, 0,
-                          "the device has no name; expected NAME[:key=value,...]");
+    return stic_error_set(err, STIC_USAGE, NULL, 0, "the device has no name; expected NAME[:key=value,...]");
   while (rest && status == STIC_OK) {
     char *pair = rest;
 
@@ -148,8 +146,9 @@ stic_status stic_spec_number(const stic_device_spec *spec, const char *key, doub
   if (!text)
     return STIC_OK;
   if (stic_number_parse(text, strlen(text), &v) != STIC_NUMBER_OK || v < low || v > high)
-    return stic_error_set(err, STIC_USAGE, NULL, 0, "device %.40s: %s is '%.40s'; expected a number from %g to %g",
-                          spec->name, key, text, low, high);
+    return stic_error_set(err, STIC_USAGE, NULL, 0,
+                          "device %.40s: %s is '%.40s'; expected a number from %g to %g", spec->name, key,
+                          text, low, high);
   *value = v;
   return STIC_OK;
 }

@@ -4,7 +4,7 @@
 
 #include "../src/stiction.h"
 
-#define STIC_SPEC_MAX 512     /* bytes of a specification, with its final 0 */
+#define STIC_SPEC_MAX 512 /* bytes of a specification, with its final 0 */
 #define STIC_SPEC_PAIRS_MAX 16
 
 /* A key that a driver knows. */

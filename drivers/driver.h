@@ -17,11 +17,11 @@
 /* ---- samples ----------------------------------------------------------------------------- */
 
 enum {
-  STIC_SAMPLE_POSITION = 1,     /* `position` is known, be it from earlier */
-  STIC_SAMPLE_ORIENTATION = 2,  /* `orientation` is known, be it from earlier */
-  STIC_SAMPLE_TRACKED = 4,      /* both come from the device now */
-  STIC_SAMPLE_FRINGE = 8,       /* tracked, at the edge of the device's space: less exact */
-  STIC_SAMPLE_VELOCITY = 16     /* `velocity` and `turn_rate` are known */
+  STIC_SAMPLE_POSITION = 1,    /* `position` is known, be it from earlier */
+  STIC_SAMPLE_ORIENTATION = 2, /* `orientation` is known, be it from earlier */
+  STIC_SAMPLE_TRACKED = 4,     /* both come from the device now */
+  STIC_SAMPLE_FRINGE = 8,      /* tracked, at the edge of the device's space: less exact */
+  STIC_SAMPLE_VELOCITY = 16    /* `velocity` and `turn_rate` are known */
 };
 
 typedef struct stic_device_sample {
@@ -45,8 +45,8 @@ typedef enum stic_connection {
   STIC_CONNECTION_RESETTING,
   STIC_CONNECTION_SYNCING, /* looking for the start of a record */
   STIC_CONNECTION_RUNNING,
-  STIC_CONNECTION_STALE,   /* silent too long: pose held, not tracked, rates zero, grip let go */
-  STIC_CONNECTION_LOST     /* closed by the other side; to be opened again */
+  STIC_CONNECTION_STALE, /* silent too long: pose held, not tracked, rates zero, grip let go */
+  STIC_CONNECTION_LOST   /* closed by the other side; to be opened again */
 } stic_connection;
 
 /* "closed", "opening" ... Real-time: yes. */
@@ -54,9 +54,9 @@ const char *stic_connection_name(stic_connection state);
 
 /* What poll() and send() return if not a count. */
 enum {
-  STIC_DRIVER_END = -1,     /* the source has no more, in order */
-  STIC_DRIVER_LOST = -2,    /* unplugged or failed; close it and try again later */
-  STIC_DRIVER_BAD_DATA = -3, /* the source's content is wrong for good; see stic_device.error */
+  STIC_DRIVER_END = -1,        /* the source has no more, in order */
+  STIC_DRIVER_LOST = -2,       /* unplugged or failed; close it and try again later */
+  STIC_DRIVER_BAD_DATA = -3,   /* the source's content is wrong for good; see stic_device.error */
   STIC_DRIVER_UNSUPPORTED = -4 /* the device cannot do this */
 };
 
@@ -83,10 +83,10 @@ typedef struct stic_device_counters {
 
 /* A device that the system has found; for match(). */
 typedef struct stic_device_id {
-  const char *bus;         /* "usb", "bluetooth", "serial" */
+  const char *bus;          /* "usb", "bluetooth", "serial" */
   uint16_t vendor, product; /* 0 where there are none */
   uint16_t usage_page, usage;
-  const char *path;        /* to open it with, e.g. "/dev/hidraw3" */
+  const char *path; /* to open it with, e.g. "/dev/hidraw3" */
   const char *product_name;
 } stic_device_id;
 
@@ -106,13 +106,13 @@ typedef struct stic_device {
 } stic_device;
 
 struct stic_driver {
-  const char *name;            /* as in NAME:key=value; unique, lower case */
-  const char *about;           /* one line for `devices` and --help */
-  const stic_spec_key *keys;   /* what the specification may hold; ended by a NULL name */
+  const char *name;          /* as in NAME:key=value; unique, lower case */
+  const char *about;         /* one line for `devices` and --help */
+  const stic_spec_key *keys; /* what the specification may hold; ended by a NULL name */
   stic_driver_kind kind;
   stic_silence silence;
-  int64_t silence_ns;          /* how long a silence means that; 0: never */
-  bool own_time;               /* source_ns, not the time of arrival, is the samples' time */
+  int64_t silence_ns; /* how long a silence means that; 0: never */
+  bool own_time;      /* source_ns, not the time of arrival, is the samples' time */
 
   /* Whether this driver is for the device. No I/O: ids and names only. NULL: opened by name alone. */
   bool (*match)(const stic_device_id *id);

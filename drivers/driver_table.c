@@ -14,12 +14,8 @@
 
 /* In the order in which they are listed and asked to match. */
 static const stic_driver *const drivers[] = {
-  &stic_spacemouse_driver,
-  &stic_hydra_driver,
-  &stic_gamepad_driver,
-  &stic_trace_driver,
-  &stic_logitech_driver,
-  &stic_sample_driver,
+  &stic_spacemouse_driver, &stic_hydra_driver,    &stic_gamepad_driver,
+  &stic_trace_driver,      &stic_logitech_driver, &stic_sample_driver,
 };
 
 #define DRIVER_COUNT ((int)(sizeof drivers / sizeof drivers[0]))

@@ -20,9 +20,9 @@
 struct stic_raw_reader {
   stic_line_reader *lines;
   bool kind_known;
-  bool begun;    /* a record has been given out */
+  bool begun; /* a record has been given out */
   stic_raw_kind kind;
-  int device;    /* that the lines are about */
+  int device; /* that the lines are about */
   int64_t last_ns;
   uint8_t bytes[STIC_RAW_BYTES_MAX];
   stic_raw_device devices[STIC_RAW_DEVICES_MAX];
@@ -107,7 +107,8 @@ static bool parse_hex(const char *text, size_t length, int *value)
   return true;
 }
 
-static stic_raw_status bad(const stic_raw_reader *r, stic_error *err, const char *format, ...) STIC_PRINTF(3, 4);
+static stic_raw_status bad(const stic_raw_reader *r, stic_error *err, const char *format, ...)
+  STIC_PRINTF(3, 4);
 
 static stic_raw_status bad(const stic_raw_reader *r, stic_error *err, const char *format, ...)
 {
@@ -117,8 +118,8 @@ static stic_raw_status bad(const stic_raw_reader *r, stic_error *err, const char
   va_start(args, format);
   vsnprintf(message, sizeof message, format, args);
   va_end(args);
-  stic_error_set(err, STIC_BAD_INPUT, stic_line_reader_name(r->lines), stic_line_reader_number(r->lines), "%s",
-                 message);
+  stic_error_set(err, STIC_BAD_INPUT, stic_line_reader_name(r->lines), stic_line_reader_number(r->lines),
+                 "%s", message);
   return STIC_RAW_BAD;
 }
 
@@ -148,8 +149,8 @@ static bool parse_bytes(const stic_raw_reader *r, words *w, uint8_t *bytes, size
 }
 
 /* A length and that many bytes. */
-static bool parse_counted_bytes(const stic_raw_reader *r, words *w, uint8_t *bytes, size_t room, size_t *count,
-                                stic_error *err)
+static bool parse_counted_bytes(const stic_raw_reader *r, words *w, uint8_t *bytes, size_t room,
+                                size_t *count, stic_error *err)
 {
   const char *text;
   size_t length;
@@ -291,20 +292,13 @@ static stic_raw_status read_hid(stic_raw_reader *r, words *w, stic_raw_record *r
     return STIC_RAW_WAIT;
   if (length == 2 && text[1] == ':') {
     switch (text[0]) {
-    case 'D':
-      return read_device_number(r, w, err);
-    case 'R':
-      return read_descriptor(r, w, err);
-    case 'N':
-      return read_text(w, d->name, sizeof d->name);
-    case 'P':
-      return read_text(w, d->place, sizeof d->place);
-    case 'I':
-      return read_ids(r, w, err);
-    case 'E':
-      return read_event(r, w, record, err);
-    default:
-      break;
+    case 'D': return read_device_number(r, w, err);
+    case 'R': return read_descriptor(r, w, err);
+    case 'N': return read_text(w, d->name, sizeof d->name);
+    case 'P': return read_text(w, d->place, sizeof d->place);
+    case 'I': return read_ids(r, w, err);
+    case 'E': return read_event(r, w, record, err);
+    default: break;
     }
   }
   return bad(r, err, "found '%s'; expected a line that starts with D: R: N: P: I: E: or #",
@@ -317,7 +311,8 @@ static stic_raw_status learn_kind(stic_raw_reader *r, const char *text, size_t l
   const int64_t version = stic_line_format_version(text, length, "serial");
 
   if (version >= 0 && version != FORMAT_VERSION)
-    return bad(r, err, "the recording has format version %lld; expected %d", (long long)version, FORMAT_VERSION);
+    return bad(r, err, "the recording has format version %lld; expected %d", (long long)version,
+               FORMAT_VERSION);
   if (version >= 0) {
     r->kind = STIC_RAW_SERIAL;
     r->kind_known = true;
@@ -360,19 +355,15 @@ stic_raw_status stic_raw_next(stic_raw_reader *r, stic_raw_record *record, stic_
       if (status != STIC_RAW_WAIT)
         return status;
       break;
-    case STIC_LINE_TOO_LONG:
-      return bad(r, err, "the line is longer than %d bytes", STIC_LINE_MAX);
-    case STIC_LINE_UNFINISHED:
-      break;
+    case STIC_LINE_TOO_LONG: return bad(r, err, "the line is longer than %d bytes", STIC_LINE_MAX);
+    case STIC_LINE_UNFINISHED: break;
     case STIC_LINE_END:
       if (!r->begun)
         return bad(r, err, "the recording holds no records; expected '%s' or a recording by hid-recorder",
                    STIC_RAW_FORMAT);
       return STIC_RAW_END;
-    case STIC_LINE_WAIT:
-      return STIC_RAW_WAIT;
-    case STIC_LINE_FAILED:
-      return bad(r, err, "cannot read: %s", strerror(errno));
+    case STIC_LINE_WAIT: return STIC_RAW_WAIT;
+    case STIC_LINE_FAILED: return bad(r, err, "cannot read: %s", strerror(errno));
     }
   }
 }

@@ -13,7 +13,7 @@
 #include "../src/stiction.h"
 
 #define STIC_RAW_FORMAT "# stiction-serial 1"
-#define STIC_RAW_BYTES_MAX 4096      /* in one line */
+#define STIC_RAW_BYTES_MAX 4096 /* in one line */
 #define STIC_RAW_DEVICES_MAX 8
 #define STIC_RAW_DESCRIPTOR_MAX 4096 /* bytes; the kernel's own limit */
 
@@ -21,18 +21,18 @@ typedef enum stic_raw_kind { STIC_RAW_SERIAL, STIC_RAW_HID } stic_raw_kind;
 
 /* What a recording tells of one HID device. */
 typedef struct stic_raw_device {
-  char name[128];                /* "" if not told; longer ones are cut */
-  char place[128];               /* P:, ditto */
-  int bus;                       /* as in linux/input.h, 3 is USB; 0: not told */
-  int vendor, product;           /* 0: not told */
-  size_t descriptor_length;      /* 0: not told */
+  char name[128];           /* "" if not told; longer ones are cut */
+  char place[128];          /* P:, ditto */
+  int bus;                  /* as in linux/input.h, 3 is USB; 0: not told */
+  int vendor, product;      /* 0: not told */
+  size_t descriptor_length; /* 0: not told */
   uint8_t descriptor[STIC_RAW_DESCRIPTOR_MAX];
 } stic_raw_device;
 
 typedef struct stic_raw_record {
   int64_t t_ns;
-  int device;          /* index from 0 as in D: lines; 0 for serial */
-  size_t length;       /* of bytes, >= 1 */
+  int device;           /* index from 0 as in D: lines; 0 for serial */
+  size_t length;        /* of bytes, >= 1 */
   const uint8_t *bytes; /* valid until the next call */
 } stic_raw_record;
 
@@ -43,8 +43,8 @@ typedef struct stic_raw_reader stic_raw_reader;
 typedef enum stic_raw_status {
   STIC_RAW_RECORD, /* `*record` is set */
   STIC_RAW_END,
-  STIC_RAW_WAIT,   /* nothing yet: interrupted by a signal, or a slow pipe; ask again */
-  STIC_RAW_BAD     /* `*err` says which line and what was expected; the reader can only be closed */
+  STIC_RAW_WAIT, /* nothing yet: interrupted by a signal, or a slow pipe; ask again */
+  STIC_RAW_BAD   /* `*err` says which line and what was expected; the reader can only be closed */
 } stic_raw_status;
 
 /* Opens a recording, "-" for standard input; its first line decides the kind. The caller owns `*reader`.

@@ -62,7 +62,8 @@ static const video_kind *find_kind(const char *path)
   return NULL;
 }
 
-static stic_status open_encoder(stic_video_writer *v, int width, int height, int fps, bool live, stic_error *err)
+static stic_status open_encoder(stic_video_writer *v, int width, int height, int fps, bool live,
+                                stic_error *err)
 {
   const AVCodec *encoder = avcodec_find_encoder_by_name(v->kind->encoder);
   AVCodecContext *c;
@@ -149,8 +150,8 @@ static char *join_text(const char *a, const char *b)
 
 static void video_destroy(stic_video_writer *v);
 
-static stic_status video_create(const char *path, int width, int height, int fps, bool live, stic_video_writer **video,
-                              stic_error *err)
+static stic_status video_create(const char *path, int width, int height, int fps, bool live,
+                                stic_video_writer **video, stic_error *err)
 {
   const video_kind *kind = find_kind(path);
   char suffix[40];

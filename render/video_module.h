@@ -12,8 +12,8 @@ typedef struct stic_video_writer stic_video_writer;
 /* As the functions of video.h. */
 typedef struct stic_video_module {
   int version;
-  stic_status (*create)(const char *path, int width, int height, int fps, bool live, stic_video_writer **writer,
-                        stic_error *err);
+  stic_status (*create)(const char *path, int width, int height, int fps, bool live,
+                        stic_video_writer **writer, stic_error *err);
   stic_status (*add)(stic_video_writer *writer, const stic_image *image, stic_error *err);
   stic_status (*finish)(stic_video_writer *writer, stic_error *err);
   stic_status (*keep)(stic_video_writer *writer, stic_error *err);

@@ -72,8 +72,7 @@ void stic_error_format(const stic_error *err, char *out, size_t out_size)
 
 const char *stic_state_name(stic_state state)
 {
-  static const char *const names[] = {"released",   "free",   "vertex", "edge",
-                                      "two-vertex", "corner", "multi"};
+  static const char *const names[] = {"released", "free", "vertex", "edge", "two-vertex", "corner", "multi"};
 
   assert((unsigned)state < sizeof names / sizeof names[0]);
   return names[state];

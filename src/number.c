@@ -10,11 +10,11 @@
 /* A decimal taken apart: (-1)^negative * digits * 10^exponent. */
 typedef struct decimal {
   bool negative;
-  bool cut;           /* more than 19 digits: `digits` holds the first 19 significant ones */
-  int kept;           /* significant digits in `digits` */
+  bool cut; /* more than 19 digits: `digits` holds the first 19 significant ones */
+  int kept; /* significant digits in `digits` */
   uint64_t digits;
   int64_t exponent;
-  int next_digit;     /* the first that was cut, for rounding */
+  int next_digit; /* the first that was cut, for rounding */
 } decimal;
 
 #define DIGITS_MAX 19 /* always fit into 64 bits */
@@ -116,9 +116,8 @@ static bool parse_slowly(const char *text, size_t length, double *value)
 
 stic_number_status stic_number_parse(const char *text, size_t length, double *value)
 {
-  static const double power[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                 1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                                 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+  static const double power[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
   decimal d;
   double v;
 
@@ -169,8 +168,8 @@ stic_number_status stic_number_parse_ns(const char *text, size_t length, int64_t
   return STIC_NUMBER_OK;
 }
 
-stic_number_status stic_number_parse_integer(const char *text, size_t length, int64_t low,
-                                             int64_t high, int64_t *value)
+stic_number_status stic_number_parse_integer(const char *text, size_t length, int64_t low, int64_t high,
+                                             int64_t *value)
 {
   const char *at = text, *const end = text + length;
   bool negative = false;

@@ -23,8 +23,8 @@ stic_number_status stic_number_parse(const char *text, size_t length, double *va
 stic_number_status stic_number_parse_ns(const char *text, size_t length, int64_t *ns);
 
 /* Digits only, optionally after one '-' if low < 0; low..high. */
-stic_number_status stic_number_parse_integer(const char *text, size_t length, int64_t low,
-                                             int64_t high, int64_t *value);
+stic_number_status stic_number_parse_integer(const char *text, size_t length, int64_t low, int64_t high,
+                                             int64_t *value);
 
 /* "within +-1 m", "> 0 and <= 10 m": what a message expects. `unit` may be "". Returns out. */
 const char *stic_number_range_text(double low, double high, bool above_low, const char *unit, char *out,

@@ -102,8 +102,8 @@ static void examine_numbers(const examination *e, stic_key key, int surface)
 
     if (v >= row->low && v <= row->high && !(row->above_low && v == row->low))
       continue;
-    complain(e, key, surface, "%s is %g; expected %s", stic_key_path(key, surface, path, sizeof path),
-             v, stic_key_expected(key, expected, sizeof expected));
+    complain(e, key, surface, "%s is %g; expected %s", stic_key_path(key, surface, path, sizeof path), v,
+             stic_key_expected(key, expected, sizeof expected));
     return;
   }
 }
@@ -113,8 +113,7 @@ static void examine_name(const examination *e, stic_key key, int surface, const 
   char path[96], expected[64];
 
   if (!memchr(name, '\0', STIC_NAME_MAX))
-    complain(e, key, surface, "%s has no end; expected %s",
-             stic_key_path(key, surface, path, sizeof path),
+    complain(e, key, surface, "%s has no end; expected %s", stic_key_path(key, surface, path, sizeof path),
              stic_key_expected(key, expected, sizeof expected));
 }
 
@@ -140,8 +139,8 @@ static bool vertices_are_numbers(const examination *e)
     const double *v = e->scene->vertices[i];
 
     if (!(fabs(v[0]) <= row->high && fabs(v[1]) <= row->high)) {
-      complain(e, STIC_KEY_POLYGON, i, "vertex %d is (%g, %g); expected coordinates within +-%g m", i,
-               v[0], v[1], row->high);
+      complain(e, STIC_KEY_POLYGON, i, "vertex %d is (%g, %g); expected coordinates within +-%g m", i, v[0],
+               v[1], row->high);
       return false;
     }
   }
@@ -164,8 +163,8 @@ static bool polygon_is_convex(const examination *e, double size)
     const double length = hypot(b[0] - a[0], b[1] - a[1]);
 
     if (length < CORNER_MIN * size) {
-      complain(e, STIC_KEY_POLYGON, next, "vertex %d is the same as vertex %d; expected different ones",
-               next, i);
+      complain(e, STIC_KEY_POLYGON, next, "vertex %d is the same as vertex %d; expected different ones", next,
+               i);
       return false;
     }
     for (int k = 2; k < n; k++) {
@@ -252,8 +251,8 @@ static void examine_surface(const examination *e, int surface)
     examine_numbers(e, key, surface);
   if (f->mu_dynamic > f->mu_static)
     complain(e, STIC_KEY_SURFACE_DYNAMIC, surface,
-             "dynamic friction %g of %s is above the static %g; expected static >= dynamic",
-             f->mu_dynamic, surface_text(e->scene, surface, text, sizeof text), f->mu_static);
+             "dynamic friction %g of %s is above the static %g; expected static >= dynamic", f->mu_dynamic,
+             surface_text(e->scene, surface, text, sizeof text), f->mu_static);
 }
 
 void stic_scene_examine(const stic_scene *scene, stic_scene_problem *problem, void *context)
@@ -269,8 +268,8 @@ void stic_scene_examine(const stic_scene *scene, stic_scene_problem *problem, vo
   if (scene->hold != STIC_HOLD_START && scene->hold != STIC_HOLD_BUTTON)
     complain(&e, STIC_KEY_HOLD, -1, "hold is %d; expected start or button", (int)scene->hold);
   if (scene->surface_count < 1 || scene->surface_count > STIC_SURFACES_MAX) {
-    complain(&e, STIC_KEY_SURFACES, -1, "there are %d surfaces; expected 1 to %d",
-             scene->surface_count, STIC_SURFACES_MAX);
+    complain(&e, STIC_KEY_SURFACES, -1, "there are %d surfaces; expected 1 to %d", scene->surface_count,
+             STIC_SURFACES_MAX);
     return;
   }
   for (int i = 0; i < scene->surface_count; i++) {

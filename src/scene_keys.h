@@ -51,16 +51,16 @@ typedef enum stic_key_type {
 } stic_key_type;
 
 typedef struct stic_key_row {
-  const char *name;     /* as written in the file */
+  const char *name; /* as written in the file */
   stic_key parent;
   stic_key_type type;
-  int count;            /* of numbers */
-  size_t offset;        /* of the first double (or the name) in stic_scene, or stic_surface for its keys;
+  int count;        /* of numbers */
+  size_t offset;    /* of the first double (or the name) in stic_scene, or stic_surface for its keys;
                          * STIC_NO_OFFSET where the value is not kept as it is */
-  double low, high;     /* allowed range in the file's unit */
-  bool above_low;       /* `low` itself is refused */
-  bool degrees;         /* the file has degrees, the scene radians */
-  bool required;        /* wherever its parent is present; else the default stays */
+  double low, high; /* allowed range in the file's unit */
+  bool above_low;   /* `low` itself is refused */
+  bool degrees;     /* the file has degrees, the scene radians */
+  bool required;    /* wherever its parent is present; else the default stays */
   const char *unit;
 } stic_key_row;
 

@@ -48,8 +48,8 @@ static origin *origin_of(reading *r, stic_key key, int surface)
 
 /* ---- telling ----------------------------------------------------------------------------- */
 
-static void tell(reading *r, bool warning, stic_status status, int64_t line, const char *format,
-                 ...) STIC_PRINTF(5, 6);
+static void tell(reading *r, bool warning, stic_status status, int64_t line, const char *format, ...)
+  STIC_PRINTF(5, 6);
 
 static void tell(reading *r, bool warning, stic_status status, int64_t line, const char *format, ...)
 {
@@ -177,8 +177,8 @@ static void read_polygon(reading *r, const yaml_node_t *node)
   count = stic_yaml_count(node);
   if (count > STIC_VERTICES_MAX) {
     r->origins[STIC_KEY_POLYGON].bad = true;
-    BAD(r, stic_yaml_line(stic_yaml_item(&r->yaml, node, STIC_VERTICES_MAX)), "object.polygon has %d vertices; expected 3 to %d",
-        count, STIC_VERTICES_MAX);
+    BAD(r, stic_yaml_line(stic_yaml_item(&r->yaml, node, STIC_VERTICES_MAX)),
+        "object.polygon has %d vertices; expected 3 to %d", count, STIC_VERTICES_MAX);
     return;
   }
   for (int i = 0; i < count; i++) {
@@ -291,8 +291,9 @@ static void unknown_key(reading *r, stic_key parent, int surface, const yaml_nod
 {
   char found[80], where[96], names[128];
 
-  BAD(r, stic_yaml_line(name), "unknown key %s in %s; expected %s", stic_yaml_found(name, found, sizeof found),
-      where_text(parent, surface, where, sizeof where), children_text(parent, names, sizeof names));
+  BAD(r, stic_yaml_line(name), "unknown key %s in %s; expected %s",
+      stic_yaml_found(name, found, sizeof found), where_text(parent, surface, where, sizeof where),
+      children_text(parent, names, sizeof names));
 }
 
 static void report_missing(reading *r, stic_key parent, int surface, const yaml_node_t *node,
@@ -325,8 +326,7 @@ static void read_mapping(reading *r, stic_key key, int surface, const yaml_node_
         where_text(key, surface, where, sizeof where), stic_yaml_found(node, found, sizeof found));
     return;
   }
-  for (yaml_node_pair_t *pair = node->data.mapping.pairs.start; pair < node->data.mapping.pairs.top;
-       pair++) {
+  for (yaml_node_pair_t *pair = node->data.mapping.pairs.start; pair < node->data.mapping.pairs.top; pair++) {
     const yaml_node_t *name = stic_yaml_node(&r->yaml, pair->key);
     const yaml_node_t *value = stic_yaml_node(&r->yaml, pair->value);
     stic_key child = STIC_KEY_ROOT;
@@ -370,8 +370,8 @@ static void read_surfaces(reading *r, const yaml_node_t *node)
   count = stic_yaml_count(node);
   if (count > STIC_SURFACES_MAX) {
     r->origins[STIC_KEY_SURFACES].bad = true;
-    BAD(r, stic_yaml_line(stic_yaml_item(&r->yaml, node, STIC_SURFACES_MAX)), "surfaces has %d items; expected 1 to %d", count,
-        STIC_SURFACES_MAX);
+    BAD(r, stic_yaml_line(stic_yaml_item(&r->yaml, node, STIC_SURFACES_MAX)),
+        "surfaces has %d items; expected 1 to %d", count, STIC_SURFACES_MAX);
     count = STIC_SURFACES_MAX;
   }
   r->scene->surface_count = count;
@@ -390,32 +390,15 @@ static void read_value(reading *r, stic_key key, int surface, const yaml_node_t 
 
   *o = (origin){r->override ? 0 : stic_yaml_line(node), true, false, r->override != NULL};
   switch (stic_key_get(key)->type) {
-  case STIC_TYPE_MAPPING:
-    read_mapping(r, key, surface, node);
-    break;
-  case STIC_TYPE_SURFACES:
-    read_surfaces(r, node);
-    break;
-  case STIC_TYPE_VERSION:
-    read_version(r, node);
-    break;
-  case STIC_TYPE_NAME:
-    read_name(r, key, surface, node);
-    break;
-  case STIC_TYPE_NUMBERS:
-    read_numbers_key(r, key, surface, node);
-    break;
-  case STIC_TYPE_SIZE:
-    read_size(r, node);
-    break;
-  case STIC_TYPE_POLYGON:
-    read_polygon(r, node);
-    break;
-  case STIC_TYPE_HOLD:
-    read_hold(r, node);
-    break;
-  case STIC_TYPE_ELSEWHERE:
-    break;
+  case STIC_TYPE_MAPPING: read_mapping(r, key, surface, node); break;
+  case STIC_TYPE_SURFACES: read_surfaces(r, node); break;
+  case STIC_TYPE_VERSION: read_version(r, node); break;
+  case STIC_TYPE_NAME: read_name(r, key, surface, node); break;
+  case STIC_TYPE_NUMBERS: read_numbers_key(r, key, surface, node); break;
+  case STIC_TYPE_SIZE: read_size(r, node); break;
+  case STIC_TYPE_POLYGON: read_polygon(r, node); break;
+  case STIC_TYPE_HOLD: read_hold(r, node); break;
+  case STIC_TYPE_ELSEWHERE: break;
   }
 }
 
@@ -488,8 +471,7 @@ static bool find_key(reading *r, const char *text, stic_key *key, int *surface)
       *surface = find_surface(r, text, length);
       *key = STIC_KEY_SURFACE;
       if (*surface < 0) {
-        BAD(r, 0, "no single surface '%s'; expected a name or 0 to %d", part,
-            r->scene->surface_count - 1);
+        BAD(r, 0, "no single surface '%s'; expected a name or 0 to %d", part, r->scene->surface_count - 1);
         return false;
       }
     } else {
@@ -643,8 +625,7 @@ static void on_finding(void *context, stic_key key, int index, const char *messa
   } else if (key == STIC_KEY_SURFACE) {
     if (!start_is_known(r, index))
       return;
-    line = r->origins[STIC_KEY_POSE].given ? r->origins[STIC_KEY_POSE].line
-                                           : r->scene->surfaces[index].line;
+    line = r->origins[STIC_KEY_POSE].given ? r->origins[STIC_KEY_POSE].line : r->scene->surfaces[index].line;
   } else {
     const int surface = key > STIC_KEY_SURFACE ? index : -1;
 
@@ -685,8 +666,7 @@ static void report_warnings(reading *r)
     warn(r, r->origins[STIC_KEY_SIZE].given ? STIC_KEY_SIZE : STIC_KEY_POLYGON, -1,
          "the object is larger than 10 m; lengths are in m, not mm");
   for (int i = 0; i < s->surface_count; i++) {
-    if (!origin_of(r, STIC_KEY_SURFACE_STATIC, i)->given ||
-        !origin_of(r, STIC_KEY_SURFACE_DYNAMIC, i)->given)
+    if (!origin_of(r, STIC_KEY_SURFACE_STATIC, i)->given || !origin_of(r, STIC_KEY_SURFACE_DYNAMIC, i)->given)
       scene_friction_used = true;
     for (int j = 0; j < i; j++) {
       if (s->surfaces[i].name[0] && strcmp(s->surfaces[i].name, s->surfaces[j].name) == 0) {
@@ -708,9 +688,8 @@ static void apply_overrides(reading *r, const stic_override *overrides, int coun
   r->override = NULL;
 }
 
-stic_status stic_scene_read_all(const char *path, const stic_override *overrides,
-                                int override_count, stic_scene *scene, stic_report *report,
-                                void *context)
+stic_status stic_scene_read_all(const char *path, const stic_override *overrides, int override_count,
+                                stic_scene *scene, stic_report *report, void *context)
 {
   reading *r = calloc(1, sizeof *r);
   stic_scene *draft = malloc(sizeof *draft);

@@ -10,8 +10,7 @@ typedef void stic_report(void *context, bool warning, const stic_error *problem)
 /* As stic_scene_read(), but goes on after a problem and reports all of them and the warnings.
  * `*scene` is set if the return value is STIC_OK, which is when no error was reported; otherwise
  * the return value is the first error's status. Real-time: no. */
-stic_status stic_scene_read_all(const char *path, const stic_override *overrides,
-                                int override_count, stic_scene *scene, stic_report *report,
-                                void *context);
+stic_status stic_scene_read_all(const char *path, const stic_override *overrides, int override_count,
+                                stic_scene *scene, stic_report *report, void *context);
 
 #endif

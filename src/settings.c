@@ -39,8 +39,7 @@ stic_status stic_settings_set_accuracy(stic_settings *settings, const char *text
     if (stic_number_parse_integer(count, strlen(count), 1, SUBSTEPS_MAX, &n) != STIC_NUMBER_OK)
       return stic_error_set(err, STIC_USAGE, NULL, 0,
                             "accuracy '%s': expected substep=N with a whole N from 1 to %d",
-                            stic_error_quote(text, strlen(text), quoted, sizeof quoted),
-                            SUBSTEPS_MAX);
+                            stic_error_quote(text, strlen(text), quoted, sizeof quoted), SUBSTEPS_MAX);
     settings->level = STIC_LEVEL_SUBSTEP;
     settings->substeps = (int)n;
     return STIC_OK;
@@ -70,8 +69,7 @@ stic_status stic_settings_set_precision(stic_settings *settings, const char *tex
     settings->precision = p;
     return STIC_OK;
   }
-  return stic_error_set(err, STIC_USAGE, NULL, 0,
-                        "precision '%s' is unknown; expected f32, f64 or f80",
+  return stic_error_set(err, STIC_USAGE, NULL, 0, "precision '%s' is unknown; expected f32, f64 or f80",
                         stic_error_quote(text, strlen(text), quoted, sizeof quoted));
 }
 
@@ -79,14 +77,8 @@ void stic_settings_accuracy_text(const stic_settings *settings, char *out, size_
 {
   assert(settings && out && out_size > 0);
   switch (settings->level) {
-  case STIC_LEVEL_FRAME:
-    snprintf(out, out_size, "frame");
-    break;
-  case STIC_LEVEL_SUBSTEP:
-    snprintf(out, out_size, "substep=%d", settings->substeps);
-    break;
-  case STIC_LEVEL_EVENT:
-    snprintf(out, out_size, "event");
-    break;
+  case STIC_LEVEL_FRAME: snprintf(out, out_size, "frame"); break;
+  case STIC_LEVEL_SUBSTEP: snprintf(out, out_size, "substep=%d", settings->substeps); break;
+  case STIC_LEVEL_EVENT: snprintf(out, out_size, "event"); break;
   }
 }

@@ -35,29 +35,29 @@ extern "C" {
 
 #define STIC_VERSION "0.1.0"
 
-#define STIC_VERTICES_MAX 64   /* of the object's polygon */
-#define STIC_SURFACES_MAX 256  /* of a scene */
-#define STIC_CONTACTS_MAX 64   /* kept at once; one more sets STIC_FLAG_LIMIT */
-#define STIC_NAME_MAX 64       /* bytes of a name, with its final 0 */
+#define STIC_VERTICES_MAX 64  /* of the object's polygon */
+#define STIC_SURFACES_MAX 256 /* of a scene */
+#define STIC_CONTACTS_MAX 64  /* kept at once; one more sets STIC_FLAG_LIMIT */
+#define STIC_NAME_MAX 64      /* bytes of a name, with its final 0 */
 
 /* ---- status and errors ------------------------------------------------------------------- */
 
 /* 0 is success. Numbers are the program's exit codes. */
 typedef enum stic_status {
   STIC_OK = 0,
-  STIC_FAILED = 1,      /* a check found something wrong */
-  STIC_USAGE = 2,       /* an argument or option that cannot be meant, or that this build lacks */
-  STIC_BAD_INPUT = 3,   /* a file's content; `line` says where */
-  STIC_NO_DEVICE = 4,   /* absent, or lost for good */
+  STIC_FAILED = 1,       /* a check found something wrong */
+  STIC_USAGE = 2,        /* an argument or option that cannot be meant, or that this build lacks */
+  STIC_BAD_INPUT = 3,    /* a file's content; `line` says where */
+  STIC_NO_DEVICE = 4,    /* absent, or lost for good */
   STIC_CANNOT_WRITE = 5, /* output could not be written, or there is no usable renderer */
   STIC_NO_MEMORY = 6
 } stic_status;
 
 typedef struct stic_error {
   stic_status status;
-  int64_t line;       /* from 1; 0: not about a line */
-  char file[256];     /* "" where no file is concerned */
-  char message[512];  /* what was found and what was expected */
+  int64_t line;      /* from 1; 0: not about a line */
+  char file[256];    /* "" where no file is concerned */
+  char message[512]; /* what was found and what was expected */
 } stic_error;
 
 /* Writes "FILE:LINE: message" (without what is absent) into `out`, always terminated.
@@ -78,10 +78,10 @@ typedef struct stic_friction {
 /* A fixed half-plane: all points q with (q - point) . normal >= 0 are free. */
 typedef struct stic_surface {
   char name[STIC_NAME_MAX];
-  double point[2];       /* m, any point on the surface */
-  double normal_deg;     /* direction of the outward normal, degrees; multiples of 90 are exact */
+  double point[2];   /* m, any point on the surface */
+  double normal_deg; /* direction of the outward normal, degrees; multiples of 90 are exact */
   stic_friction friction;
-  int64_t line;          /* where the scene file defines it; 0: nowhere */
+  int64_t line; /* where the scene file defines it; 0: nowhere */
 } stic_surface;
 
 typedef enum stic_hold {
@@ -91,18 +91,18 @@ typedef enum stic_hold {
 
 /* What is simulated. Fill with stic_scene_init(), then set fields; or stic_scene_read(). */
 typedef struct stic_scene {
-  char name[STIC_NAME_MAX];                 /* default "" */
-  int vertex_count;                         /* 3..64 */
-  double vertices[STIC_VERTICES_MAX][2];    /* m, body coordinates, convex, counter-clockwise */
-  double depth;                             /* m, along z, > 0, default 0.1; for pictures only */
-  double x, y, z;                           /* m, start of the body's origin, default 0 */
-  double angle;                             /* rad, start, default 0 */
-  double stiffness;                         /* k_p [4, eq (3)], N/m, > 0 */
-  double rotational_stiffness;              /* k_theta [4, eq (4)], N m/rad, >= 0 */
-  stic_hold hold;                           /* default STIC_HOLD_START */
-  double holding_point[2];                  /* b, m, body coordinates, default (0, 0) */
-  double reach;                             /* m, >= 0, default 0.05: largest distance from hand to polygon */
-  int surface_count;                        /* 1..256 */
+  char name[STIC_NAME_MAX];              /* default "" */
+  int vertex_count;                      /* 3..64 */
+  double vertices[STIC_VERTICES_MAX][2]; /* m, body coordinates, convex, counter-clockwise */
+  double depth;                          /* m, along z, > 0, default 0.1; for pictures only */
+  double x, y, z;                        /* m, start of the body's origin, default 0 */
+  double angle;                          /* rad, start, default 0 */
+  double stiffness;                      /* k_p [4, eq (3)], N/m, > 0 */
+  double rotational_stiffness;           /* k_theta [4, eq (4)], N m/rad, >= 0 */
+  stic_hold hold;                        /* default STIC_HOLD_START */
+  double holding_point[2];               /* b, m, body coordinates, default (0, 0) */
+  double reach;                          /* m, >= 0, default 0.05: largest distance from hand to polygon */
+  int surface_count;                     /* 1..256 */
   stic_surface surfaces[STIC_SURFACES_MAX];
 } stic_scene;
 
@@ -127,8 +127,8 @@ typedef struct stic_override {
 
 /* Reads a scene file (YAML). All that the format demands is checked; the first problem is reported
  * with its line. `overrides` may be NULL if count is 0. Real-time: no. */
-STIC_API stic_status stic_scene_read(const char *path, const stic_override *overrides,
-                                     int override_count, stic_scene *scene, stic_error *err);
+STIC_API stic_status stic_scene_read(const char *path, const stic_override *overrides, int override_count,
+                                     stic_scene *scene, stic_error *err);
 
 /* Checks ranges, convexity, friction and that the object starts outside every surface. Real-time: no. */
 STIC_API stic_status stic_scene_validate(const stic_scene *scene, stic_error *err);
@@ -161,53 +161,55 @@ typedef enum stic_state {
 } stic_state;
 
 enum {
-  STIC_FLAG_SLIPPED = 1,    /* a contact slid in this row */
-  STIC_FLAG_WEDGED = 2,     /* the contacts hold whatever the hand does */
-  STIC_FLAG_NO_ANSWER = 4,  /* no admissible answer; the object stays where it was */
-  STIC_FLAG_LIMIT = 8,      /* a bound on stages, events or contacts was reached */
-  STIC_FLAG_LOST = 16       /* tracking lost */
+  STIC_FLAG_SLIPPED = 1,   /* a contact slid in this row */
+  STIC_FLAG_WEDGED = 2,    /* the contacts hold whatever the hand does */
+  STIC_FLAG_NO_ANSWER = 4, /* no admissible answer; the object stays where it was */
+  STIC_FLAG_LIMIT = 8,     /* a bound on stages, events or contacts was reached */
+  STIC_FLAG_LOST = 16      /* tracking lost */
 };
 
 typedef struct stic_contact {
-  int vertex, surface;  /* indices from 0 */
-  double x, y;          /* m, its place: exactly constant while stuck */
-  double normal;        /* N, >= 0 */
-  double friction;      /* N, signed along the tangent */
+  int vertex, surface; /* indices from 0 */
+  double x, y;         /* m, its place: exactly constant while stuck */
+  double normal;       /* N, >= 0 */
+  double friction;     /* N, signed along the tangent */
 } stic_contact;
 
 typedef struct stic_result {
   int64_t t_ns;
   stic_state state;
-  double x, y, z, theta;                     /* body origin and angle, m, rad */
-  double hand_x, hand_y, hand_z, hand_theta; /* hand; hand_theta is the target phi, while released the raw hand angle */
-  double holding_x, holding_y;               /* m, world: the holding point g; while released, the hand */
-  double force_x, force_y, moment;           /* the spring's force on the object at the holding point [4]; 0 while released */
-  int64_t slips;                             /* since the start */
-  unsigned flags;                            /* sum of STIC_FLAG_ */
-  int iterations;                            /* root-finding steps in this row */
-  double residual;                           /* of force and moment balance, relative to the largest term */
-  int contact_count;                         /* at most STIC_CONTACTS_MAX */
-  stic_contact contacts[STIC_CONTACTS_MAX];  /* by vertex, then surface; only contact_count are set */
+  double x, y, z, theta; /* body origin and angle, m, rad */
+  double hand_x, hand_y, hand_z,
+    hand_theta;                /* hand; hand_theta is the target phi, while released the raw hand angle */
+  double holding_x, holding_y; /* m, world: the holding point g; while released, the hand */
+  double force_x, force_y,
+    moment;          /* the spring's force on the object at the holding point [4]; 0 while released */
+  int64_t slips;     /* since the start */
+  unsigned flags;    /* sum of STIC_FLAG_ */
+  int iterations;    /* root-finding steps in this row */
+  double residual;   /* of force and moment balance, relative to the largest term */
+  int contact_count; /* at most STIC_CONTACTS_MAX */
+  stic_contact contacts[STIC_CONTACTS_MAX]; /* by vertex, then surface; only contact_count are set */
 } stic_result;
 
 /* "released", "free", "vertex", "edge", "two-vertex", "corner", "multi". Real-time: yes. */
 STIC_API const char *stic_state_name(stic_state state);
 
 typedef enum stic_event_kind {
-  STIC_EVENT_TOUCH,   /* a vertex reached a surface */
-  STIC_EVENT_OPEN,    /* ... and left it */
-  STIC_EVENT_SLIP,    /* a contact slid; length is the distance */
-  STIC_EVENT_SNAP,    /* a pinned object's equilibrium vanished and it turned to the next; length is the turn, rad */
-  STIC_EVENT_TAKE,    /* gripped */
+  STIC_EVENT_TOUCH, /* a vertex reached a surface */
+  STIC_EVENT_OPEN,  /* ... and left it */
+  STIC_EVENT_SLIP,  /* a contact slid; length is the distance */
+  STIC_EVENT_SNAP, /* a pinned object's equilibrium vanished and it turned to the next; length is the turn, rad */
+  STIC_EVENT_TAKE, /* gripped */
   STIC_EVENT_RELEASE
 } stic_event_kind;
 
 typedef struct stic_event {
-  double t;             /* s */
+  double t; /* s */
   stic_event_kind kind;
-  int vertex, surface;  /* -1 where none is meant */
-  double x, y;          /* m, where: the contact, or the hand for take and release */
-  double length;        /* m (slip), rad (snap), else 0 */
+  int vertex, surface; /* -1 where none is meant */
+  double x, y;         /* m, where: the contact, or the hand for take and release */
+  double length;       /* m (slip), rad (snap), else 0 */
 } stic_event;
 
 /* "touch", "open", "slip", "snap", "take", "release". Real-time: yes. */
@@ -225,10 +227,10 @@ typedef enum stic_level {
 typedef enum stic_precision { STIC_F32, STIC_F64, STIC_F80 } stic_precision;
 
 typedef struct stic_settings {
-  stic_level level;          /* default STIC_LEVEL_EVENT */
-  int substeps;              /* for STIC_LEVEL_SUBSTEP: 1..1000000, default 8 */
-  stic_precision precision;  /* default STIC_F64 */
-  double h_min;              /* hand travel after an event before the next judgement at level event,
+  stic_level level;         /* default STIC_LEVEL_EVENT */
+  int substeps;             /* for STIC_LEVEL_SUBSTEP: 1..1000000, default 8 */
+  stic_precision precision; /* default STIC_F64 */
+  double h_min;             /* hand travel after an event before the next judgement at level event,
                               * in object sizes, (0, 1], default 1e-4; smaller follows bursts of
                               * slips more closely and costs more events */
 } stic_settings;
@@ -249,8 +251,8 @@ typedef struct stic_sim stic_sim;
 /* Makes a simulation; scene and settings are copied. `*sim` is NULL on failure. The caller owns it
  * and ends it with stic_sim_destroy(). Allocates all that the simulation will ever use.
  * Real-time: no. */
-STIC_API stic_status stic_sim_create(const stic_scene *scene, const stic_settings *settings,
-                                     stic_sim **sim, stic_error *err);
+STIC_API stic_status stic_sim_create(const stic_scene *scene, const stic_settings *settings, stic_sim **sim,
+                                     stic_error *err);
 STIC_API void stic_sim_destroy(stic_sim *sim); /* NULL allowed */
 
 /* Advances to the sample and says where the object rests. The first sample is one relaxation from

@@ -15,7 +15,8 @@
 /* Our files need six levels; libyaml's time grows with the square of the depth. */
 #define NESTING_MAX 32
 
-static void tell(const stic_yaml *y, stic_status status, int64_t line, const char *format, ...) STIC_PRINTF(4, 5);
+static void tell(const stic_yaml *y, stic_status status, int64_t line, const char *format, ...)
+  STIC_PRINTF(4, 5);
 
 static void tell(const stic_yaml *y, stic_status status, int64_t line, const char *format, ...)
 {
@@ -46,20 +47,14 @@ const char *stic_yaml_found(const yaml_node_t *node, char *out, size_t out_size)
     if (node->data.scalar.length == 0)
       snprintf(out, out_size, "nothing");
     else
-      snprintf(out, out_size, "'%s'%s",
-               stic_error_quote((const char *)node->data.scalar.value, node->data.scalar.length, text,
-                                sizeof text),
-               node->data.scalar.style == YAML_PLAIN_SCALAR_STYLE ? "" : " in quotes");
+      snprintf(
+        out, out_size, "'%s'%s",
+        stic_error_quote((const char *)node->data.scalar.value, node->data.scalar.length, text, sizeof text),
+        node->data.scalar.style == YAML_PLAIN_SCALAR_STYLE ? "" : " in quotes");
     break;
-  case YAML_SEQUENCE_NODE:
-    snprintf(out, out_size, "a list of %d", stic_yaml_count(node));
-    break;
-  case YAML_MAPPING_NODE:
-    snprintf(out, out_size, "a mapping");
-    break;
-  case YAML_NO_NODE:
-    snprintf(out, out_size, "nothing");
-    break;
+  case YAML_SEQUENCE_NODE: snprintf(out, out_size, "a list of %d", stic_yaml_count(node)); break;
+  case YAML_MAPPING_NODE: snprintf(out, out_size, "a mapping"); break;
+  case YAML_NO_NODE: snprintf(out, out_size, "nothing"); break;
   }
   return out;
 }
@@ -139,14 +134,11 @@ static int nesting_step(yaml_token_type_t type)
   case YAML_FLOW_SEQUENCE_START_TOKEN:
   case YAML_FLOW_MAPPING_START_TOKEN:
   case YAML_BLOCK_SEQUENCE_START_TOKEN:
-  case YAML_BLOCK_MAPPING_START_TOKEN:
-    return 1;
+  case YAML_BLOCK_MAPPING_START_TOKEN: return 1;
   case YAML_FLOW_SEQUENCE_END_TOKEN:
   case YAML_FLOW_MAPPING_END_TOKEN:
-  case YAML_BLOCK_END_TOKEN:
-    return -1;
-  default:
-    return 0;
+  case YAML_BLOCK_END_TOKEN: return -1;
+  default: return 0;
   }
 }
 

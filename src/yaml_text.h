@@ -11,12 +11,12 @@
 typedef void stic_yaml_problem(void *context, stic_status status, int64_t line, const char *message);
 
 typedef struct stic_yaml {
-  const char *what;  /* "scene": for messages */
+  const char *what; /* "scene": for messages */
   stic_yaml_problem *problem;
   void *context;
   yaml_document_t document; /* while one is loaded */
   yaml_parser_t parser;
-  const char *text;         /* being read */
+  const char *text; /* being read */
   size_t length;
 } stic_yaml;
 

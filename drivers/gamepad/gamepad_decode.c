@@ -4,7 +4,14 @@ enum { ID_USB = 0x01, ID_BLUETOOTH = 0x31 };
 enum { USB_LENGTH = 64, BLUETOOTH_LENGTH = 78, REDUCED_LENGTH = 10, CRC_LENGTH = 4 };
 /* Where the common part begins: after the ID, over Bluetooth also after a byte of its own. */
 enum { USB_START = 1, BLUETOOTH_START = 2 };
-enum { AT_LEFT = 0, AT_RIGHT = 2, AT_L2 = 4, AT_R2 = 5, AT_SEQUENCE = 6, AT_KEYS = 7 }; /* in the common part */
+enum {
+  AT_LEFT = 0,
+  AT_RIGHT = 2,
+  AT_L2 = 4,
+  AT_R2 = 5,
+  AT_SEQUENCE = 6,
+  AT_KEYS = 7
+}; /* in the common part */
 
 #define INPUT_SEED 0xa1
 #define HAT_CENTRE 8
@@ -47,11 +54,11 @@ static uint32_t decode_buttons(const uint8_t *keys)
     unsigned mask;
     uint32_t button;
   } map[] = {
-    {0, 0x10, STIC_GAMEPAD_SQUARE}, {0, 0x20, STIC_GAMEPAD_CROSS},   {0, 0x40, STIC_GAMEPAD_CIRCLE},
-    {0, 0x80, STIC_GAMEPAD_TRIANGLE}, {1, 0x01, STIC_GAMEPAD_L1},    {1, 0x02, STIC_GAMEPAD_R1},
-    {1, 0x04, STIC_GAMEPAD_L2},     {1, 0x08, STIC_GAMEPAD_R2},      {1, 0x10, STIC_GAMEPAD_CREATE},
-    {1, 0x20, STIC_GAMEPAD_OPTIONS}, {1, 0x40, STIC_GAMEPAD_L3},     {1, 0x80, STIC_GAMEPAD_R3},
-    {2, 0x01, STIC_GAMEPAD_PS},     {2, 0x02, STIC_GAMEPAD_TOUCHPAD},
+    {0, 0x10, STIC_GAMEPAD_SQUARE},   {0, 0x20, STIC_GAMEPAD_CROSS},    {0, 0x40, STIC_GAMEPAD_CIRCLE},
+    {0, 0x80, STIC_GAMEPAD_TRIANGLE}, {1, 0x01, STIC_GAMEPAD_L1},       {1, 0x02, STIC_GAMEPAD_R1},
+    {1, 0x04, STIC_GAMEPAD_L2},       {1, 0x08, STIC_GAMEPAD_R2},       {1, 0x10, STIC_GAMEPAD_CREATE},
+    {1, 0x20, STIC_GAMEPAD_OPTIONS},  {1, 0x40, STIC_GAMEPAD_L3},       {1, 0x80, STIC_GAMEPAD_R3},
+    {2, 0x01, STIC_GAMEPAD_PS},       {2, 0x02, STIC_GAMEPAD_TOUCHPAD},
   };
   uint32_t buttons = 0;
 
@@ -65,7 +72,7 @@ static uint32_t decode_buttons(const uint8_t *keys)
 static stic_gamepad_result decode_common(const uint8_t *at, stic_gamepad *pad)
 {
   /* clockwise from up; the last is the centre */
-  static const signed char directions[HAT_CENTRE + 1][2] = {{0, 1},  {1, 1},   {1, 0},  {1, -1}, {0, -1},
+  static const signed char directions[HAT_CENTRE + 1][2] = {{0, 1},   {1, 1},  {1, 0},  {1, -1}, {0, -1},
                                                             {-1, -1}, {-1, 0}, {-1, 1}, {0, 0}};
   const int hat = at[AT_KEYS] & 0x0f;
 
@@ -105,7 +112,6 @@ stic_gamepad_result stic_gamepad_decode(const uint8_t *report, size_t length, st
         little_endian_32(report + BLUETOOTH_LENGTH - CRC_LENGTH))
       return STIC_GAMEPAD_BAD_CHECKSUM;
     return decode_common(report + BLUETOOTH_START, pad);
-  default:
-    return STIC_GAMEPAD_OTHER;
+  default: return STIC_GAMEPAD_OTHER;
   }
 }

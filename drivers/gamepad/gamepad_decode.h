@@ -33,11 +33,11 @@ typedef struct stic_gamepad {
 
 typedef enum stic_gamepad_result {
   STIC_GAMEPAD_OK,
-  STIC_GAMEPAD_REDUCED,     /* Bluetooth before the pad has been asked for full reports */
-  STIC_GAMEPAD_OTHER,       /* a kind that says nothing to us */
+  STIC_GAMEPAD_REDUCED, /* Bluetooth before the pad has been asked for full reports */
+  STIC_GAMEPAD_OTHER,   /* a kind that says nothing to us */
   STIC_GAMEPAD_BAD_LENGTH,
   STIC_GAMEPAD_BAD_CHECKSUM,
-  STIC_GAMEPAD_BAD_VALUE    /* a hat direction that is none */
+  STIC_GAMEPAD_BAD_VALUE /* a hat direction that is none */
 } stic_gamepad_result;
 
 /* Decodes a report, its ID first; `*pad` is written only if it is STIC_GAMEPAD_OK. Real-time: yes. */

@@ -35,7 +35,8 @@ static bool gamepad_match(const stic_device_id *id)
 
 /* Left stick: right and up. L2 pulls nearer, R2 pushes away. Right stick: looks right and up, that is turns
  * about -y and +x. Hat: rolls to its side. */
-static void make_sample(const gamepad_device *d, const stic_gamepad *pad, int64_t t_ns, stic_device_sample *sample)
+static void make_sample(const gamepad_device *d, const stic_gamepad *pad, int64_t t_ns,
+                        stic_device_sample *sample)
 {
   stic_hid_clear_sample(sample, t_ns, d->sequence.total, STIC_SAMPLE_VELOCITY);
   sample->velocity[0] = d->rates.speed * pad->left[0];
@@ -76,12 +77,10 @@ static bool take_report(stic_device *device, const stic_hid_link *link, const ui
     d->base.state = STIC_CONNECTION_RESETTING;
     ask_for_full_reports(d, t_ns);
     return false;
-  case STIC_GAMEPAD_OTHER:
-    return false;
+  case STIC_GAMEPAD_OTHER: return false;
   case STIC_GAMEPAD_BAD_LENGTH:
   case STIC_GAMEPAD_BAD_CHECKSUM:
-  case STIC_GAMEPAD_BAD_VALUE:
-    break;
+  case STIC_GAMEPAD_BAD_VALUE: break;
   }
   d->base.counters.bad_records++;
   return false;
@@ -139,10 +138,7 @@ static void gamepad_describe(const stic_device *device, char *out, size_t out_si
   snprintf(out, out_size, "%s, %g m/s and %g rad/s at full deflection", where, d->rates.speed, d->rates.turn);
 }
 
-static const stic_spec_key keys[] = {
-  STIC_HID_SPEC_KEYS,
-  STIC_HID_RATE_KEYS,
-  {NULL, false, NULL}};
+static const stic_spec_key keys[] = {STIC_HID_SPEC_KEYS, STIC_HID_RATE_KEYS, {NULL, false, NULL}};
 
 const stic_driver stic_gamepad_driver = {
   .name = "gamepad",

@@ -69,7 +69,8 @@ static unsigned rank(const stic_hid_node *node)
 }
 
 /* Moves what is wanted to the front, each path once and by rank. Returns how many there are. */
-static int keep_wanted(const stic_driver *driver, const stic_device_spec *spec, stic_hid_node *nodes, int count)
+static int keep_wanted(const stic_driver *driver, const stic_device_spec *spec, stic_hid_node *nodes,
+                       int count)
 {
   int kept = 0;
 
@@ -121,7 +122,8 @@ static stic_status open_nodes(const stic_hid_transport *transport, const stic_hi
 
 static stic_status begin_raw(stic_hid_link *first, const char *path, stic_error *err)
 {
-  stic_raw_device about = {.bus = strcmp(first->node.bus, "bluetooth") == 0 ? BUS_BLUETOOTH_NUMBER : BUS_USB_NUMBER,
+  stic_raw_device about = {.bus = strcmp(first->node.bus, "bluetooth") == 0 ? BUS_BLUETOOTH_NUMBER
+                                                                            : BUS_USB_NUMBER,
                            .vendor = first->node.vendor,
                            .product = first->node.product};
 
@@ -135,8 +137,8 @@ stic_status stic_hid_connect(const stic_hid_transport *transport, const stic_dri
                              stic_error *err)
 {
   stic_hid_node nodes[STIC_HID_NODES_MAX];
-  const int found = keep_wanted(driver, spec, nodes,
-                                transport->enumerate(transport->context, nodes, STIC_HID_NODES_MAX));
+  const int found =
+    keep_wanted(driver, spec, nodes, transport->enumerate(transport->context, nodes, STIC_HID_NODES_MAX));
   const char *raw = stic_spec_text(spec, "raw", NULL);
   stic_status status;
 
@@ -160,7 +162,8 @@ void stic_hid_disconnect(stic_hid_link *links, int count)
     links[i].transport->close(links[i].handle);
 }
 
-static void record(const stic_hid_link *link, stic_device *device, const uint8_t *report, size_t length, int64_t t_ns)
+static void record(const stic_hid_link *link, stic_device *device, const uint8_t *report, size_t length,
+                   int64_t t_ns)
 {
   stic_hid_link *first = link->first;
 
@@ -172,8 +175,8 @@ static void record(const stic_hid_link *link, stic_device *device, const uint8_t
 }
 
 /* The transport's read(), with the device told if it is over. */
-static int read_report(stic_hid_link *link, stic_device *device, uint8_t *report, size_t size, int64_t until_ns,
-                       int64_t *t_ns)
+static int read_report(stic_hid_link *link, stic_device *device, uint8_t *report, size_t size,
+                       int64_t until_ns, int64_t *t_ns)
 {
   const int length = link->transport->read(link->handle, report, size, until_ns, t_ns);
 
@@ -225,12 +228,13 @@ void stic_hid_describe(const stic_hid_link *link, const char *name, char *out, s
 
 stic_status stic_hid_no_permission(const stic_hid_node *node, stic_error *err)
 {
-  return stic_error_set(err, STIC_NO_DEVICE, NULL, 0,
-                        "no permission to open %.80s; put KERNEL==\"hidraw*\", ATTRS{idVendor}==\"%04x\", "
-                        "ATTRS{idProduct}==\"%04x\", TAG+=\"uaccess\" into /etc/udev/rules.d/70-stiction.rules "
-                        "(or install stiction's file of that name), then run: "
-                        "sudo udevadm control --reload && sudo udevadm trigger",
-                        node->path, (unsigned)node->vendor, (unsigned)node->product);
+  return stic_error_set(
+    err, STIC_NO_DEVICE, NULL, 0,
+    "no permission to open %.80s; put KERNEL==\"hidraw*\", ATTRS{idVendor}==\"%04x\", "
+    "ATTRS{idProduct}==\"%04x\", TAG+=\"uaccess\" into /etc/udev/rules.d/70-stiction.rules "
+    "(or install stiction's file of that name), then run: "
+    "sudo udevadm control --reload && sudo udevadm trigger",
+    node->path, (unsigned)node->vendor, (unsigned)node->product);
 }
 
 /* ---- what reports have in common --------------------------------------------------------- */
@@ -307,9 +311,7 @@ int stic_hid_usages(const uint8_t *descriptor, size_t length, stic_hid_usage *us
 
   while (at < length && next_item(descriptor, length, &at, &i)) {
     switch (i.kind) {
-    case ITEM_USAGE_PAGE:
-      usage.page = (uint16_t)i.value;
-      break;
+    case ITEM_USAGE_PAGE: usage.page = (uint16_t)i.value; break;
     case ITEM_USAGE:
       usage.id = (uint16_t)i.value;
       if (i.size == 4) /* carries its own page */
@@ -319,11 +321,8 @@ int stic_hid_usages(const uint8_t *descriptor, size_t length, stic_hid_usage *us
       if (depth++ == 0 && count < capacity)
         usages[count++] = usage;
       break;
-    case ITEM_END:
-      depth--;
-      break;
-    default:
-      break;
+    case ITEM_END: depth--; break;
+    default: break;
     }
   }
   return count;

@@ -68,10 +68,12 @@ typedef struct stic_hid_transport {
 extern const stic_hid_transport stic_hid_system;
 
 /* Keys that every HID driver knows, for its table. */
-#define STIC_HID_SPEC_KEYS \
-  {"path", false, "which node, as `stiction devices` shows it, default the first that fits"}, \
-  {"serial", false, "which device, by its serial number"}, \
-  {"raw", false, "record the received reports to a file, for reports of problems"}
+#define STIC_HID_SPEC_KEYS                                                                                   \
+  {"path", false, "which node, as `stiction devices` shows it, default the first that fits"},                \
+    {"serial", false, "which device, by its serial number"},                                                 \
+  {                                                                                                          \
+    "raw", false, "record the received reports to a file, for reports of problems"                           \
+  }
 
 /* Lists what the transport has, each path once: of several usages the first on the Generic Desktop page, else
  * the first. Returns the number. Real-time: no. */
@@ -138,9 +140,11 @@ typedef struct stic_hid_rates {
   double turn;  /* rad/s, 0..100, default 1.5: a quarter turn in about a second */
 } stic_hid_rates;
 
-#define STIC_HID_RATE_KEYS \
-  {"speed", false, "m/s at full deflection, 0 to 100, default 0.25"}, \
-  {"turn", false, "rad/s at full deflection, 0 to 100, default 1.5"}
+#define STIC_HID_RATE_KEYS                                                                                   \
+  {"speed", false, "m/s at full deflection, 0 to 100, default 0.25"},                                        \
+  {                                                                                                          \
+    "turn", false, "rad/s at full deflection, 0 to 100, default 1.5"                                         \
+  }
 
 /* STIC_USAGE for what is out of range. Real-time: no. */
 stic_status stic_hid_read_rates(const stic_device_spec *spec, stic_hid_rates *rates, stic_error *err);

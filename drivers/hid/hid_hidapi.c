@@ -135,8 +135,8 @@ static stic_status hidapi_open(void *context, const stic_hid_node *node, stic_hi
   opened->device = hid_open_path(node->path);
   if (!opened->device) {
     free(opened);
-    return stic_error_set(err, STIC_NO_DEVICE, NULL, 0,
-                          "cannot open %.100s by hidapi-" BACKEND HINT, node->path);
+    return stic_error_set(err, STIC_NO_DEVICE, NULL, 0, "cannot open %.100s by hidapi-" BACKEND HINT,
+                          node->path);
   }
   *handle = opened;
   return STIC_OK;

@@ -81,7 +81,8 @@ static void advance_clock(stic_hid_recording *r, int64_t t_ns)
     r->clock_ns = t_ns;
 }
 
-static int recording_read(stic_hid_handle *handle, uint8_t *report, size_t size, int64_t until_ns, int64_t *t_ns)
+static int recording_read(stic_hid_handle *handle, uint8_t *report, size_t size, int64_t until_ns,
+                          int64_t *t_ns)
 {
   stic_hid_recording *r = handle->recording;
   size_t length;

@@ -37,7 +37,7 @@ typedef struct stic_hydra_report {
 
 typedef enum stic_hydra_result {
   STIC_HYDRA_OK,
-  STIC_HYDRA_OTHER,       /* not as long as a motion report: from the gamepad side */
+  STIC_HYDRA_OTHER, /* not as long as a motion report: from the gamepad side */
   STIC_HYDRA_BAD_HEADER,
   STIC_HYDRA_BAD_CHECKSUM,
   STIC_HYDRA_BAD_ROTATION /* a quaternion that is none */

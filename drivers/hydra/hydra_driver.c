@@ -10,7 +10,7 @@
 
 #define VENDOR 0x1532
 #define PRODUCT 0x0300
-#define NODES_MAX 2 /* its two interfaces: motion, and gamepad with control */
+#define NODES_MAX 2                   /* its two interfaces: motion, and gamepad with control */
 #define SILENCE_NS INT64_C(100000000) /* 25 reports */
 #define SLICE_NS INT64_C(10000000)    /* of a wait on one of two nodes */
 
@@ -35,7 +35,8 @@ static bool hydra_match(const stic_device_id *id)
 
 /* ---- samples ----------------------------------------------------------------------------- */
 
-static void make_sample(hydra_device *d, const stic_hydra_report *report, int64_t t_ns, stic_device_sample *sample)
+static void make_sample(hydra_device *d, const stic_hydra_report *report, int64_t t_ns,
+                        stic_device_sample *sample)
 {
   const stic_hydra_wand *wand = &report->wands[d->wand];
 
@@ -56,17 +57,14 @@ static bool take_report(stic_device *device, const stic_hid_link *link, const ui
   stic_hydra_report report;
 
   switch (stic_hydra_decode(data, length, &report)) {
-  case STIC_HYDRA_OK:
-    break;
+  case STIC_HYDRA_OK: break;
   case STIC_HYDRA_OTHER:
     if (node == d->motion && device->state == STIC_CONNECTION_RUNNING)
       device->counters.bad_records++;
     return false;
   case STIC_HYDRA_BAD_HEADER:
   case STIC_HYDRA_BAD_CHECKSUM:
-  case STIC_HYDRA_BAD_ROTATION:
-    device->counters.bad_records++;
-    return false;
+  case STIC_HYDRA_BAD_ROTATION: device->counters.bad_records++; return false;
   }
   d->motion = node;
   device->state = STIC_CONNECTION_RUNNING;
@@ -96,8 +94,7 @@ static void send_mode(hydra_device *d, bool motion)
 static int advance_mode(hydra_device *d)
 {
   switch (stic_hydra_mode_next(&d->mode, stic_hid_now(&d->links[0]))) {
-  case STIC_HYDRA_WAIT:
-    break;
+  case STIC_HYDRA_WAIT: break;
   case STIC_HYDRA_COMMAND:
     d->base.state = STIC_CONNECTION_RESETTING;
     d->changed = true;
@@ -164,7 +161,8 @@ static stic_status choose_wand(hydra_device *d, const stic_device_spec *spec, st
   const char *hand = stic_spec_text(spec, "hand", "right");
 
   if (strcmp(hand, "left") != 0 && strcmp(hand, "right") != 0)
-    return stic_error_set(err, STIC_USAGE, NULL, 0, "device hydra: hand is '%.40s'; expected left or right", hand);
+    return stic_error_set(err, STIC_USAGE, NULL, 0, "device hydra: hand is '%.40s'; expected left or right",
+                          hand);
   d->wand = strcmp(hand, "left") == 0 ? STIC_HYDRA_LEFT : STIC_HYDRA_RIGHT;
   return STIC_OK;
 }
@@ -207,9 +205,7 @@ static void hydra_describe(const stic_device *device, char *out, size_t out_size
 }
 
 static const stic_spec_key keys[] = {
-  STIC_HID_SPEC_KEYS,
-  {"hand", false, "left or right: which wand, default right"},
-  {NULL, false, NULL}};
+  STIC_HID_SPEC_KEYS, {"hand", false, "left or right: which wand, default right"}, {NULL, false, NULL}};
 
 const stic_driver stic_hydra_driver = {
   .name = "hydra",

@@ -5,7 +5,7 @@
 
 #include "../../src/stiction.h"
 
-#define STIC_LOGITECH_RECORD 16 /* bytes */
+#define STIC_LOGITECH_RECORD 16  /* bytes */
 #define STIC_LOGITECH_TURN 14400 /* counts of a whole turn: 40 a degree */
 
 /* Bits of a record's first byte. */
@@ -21,9 +21,9 @@ enum {
 
 /* A record as the device counts. */
 typedef struct stic_logitech_record {
-  int32_t position[3]; /* x, y, z, 0.001 inch, 21 bits with sign */
+  int32_t position[3];  /* x, y, z, 0.001 inch, 21 bits with sign */
   int pitch, yaw, roll; /* 1/40 degree, 0..14399 */
-  unsigned bits;       /* STIC_LOGITECH_ */
+  unsigned bits;        /* STIC_LOGITECH_ */
 } stic_logitech_record;
 
 /* Finds records in a stream of bytes. All zero is a decoder that has seen nothing. */

@@ -52,7 +52,8 @@ static stic_status logitech_open(const stic_device_spec *spec, stic_device **dev
   stic_status status;
 
   if (!path || strlen(path) >= PATH_ROOM)
-    return stic_error_set(err, STIC_USAGE, NULL, 0, "device logitech: expected logitech:port=PORT, e.g. /dev/ttyS0");
+    return stic_error_set(err, STIC_USAGE, NULL, 0,
+                          "device logitech: expected logitech:port=PORT, e.g. /dev/ttyS0");
   d = calloc(1, sizeof *d);
   if (!d)
     return stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");

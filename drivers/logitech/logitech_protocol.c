@@ -7,18 +7,18 @@
 
 #define MS 1000000 /* ns */
 #define ENQ "\005"
-#define ATTEMPTS 2         /* of the whole start */
-#define QUESTIONS 2        /* of the diagnostics, within one attempt */
-#define RECORD_SIZE_AT 4   /* in the *m reply */
+#define ATTEMPTS 2       /* of the whole start */
+#define QUESTIONS 2      /* of the diagnostics, within one attempt */
+#define RECORD_SIZE_AT 4 /* in the *m reply */
 /* Without these two the unit works, only out of range: cables may be plugged in later. */
 #define PARTS_NOT_NEEDED (1u << STIC_LOGITECH_PART_TRANSMITTER | 1u << STIC_LOGITECH_PART_RECEIVER)
 #define PARTS_ALL ((1u << STIC_LOGITECH_PARTS) - 1)
 
 static const int64_t step_ns[] = {
-  [STIC_LOGITECH_STEP_SELECT] = 200 * MS, [STIC_LOGITECH_STEP_HOLD] = 200 * MS,
-  [STIC_LOGITECH_STEP_LET_GO] = 20 * MS,  [STIC_LOGITECH_STEP_RESET] = 1200 * MS,
-  [STIC_LOGITECH_STEP_DEMAND] = 300 * MS, [STIC_LOGITECH_STEP_DIAGNOSE] = 1000 * MS,
-  [STIC_LOGITECH_STEP_FORMAT] = 20 * MS,  [STIC_LOGITECH_STEP_INFORM] = 500 * MS,
+  [STIC_LOGITECH_STEP_SELECT] = 200 * MS,  [STIC_LOGITECH_STEP_HOLD] = 200 * MS,
+  [STIC_LOGITECH_STEP_LET_GO] = 20 * MS,   [STIC_LOGITECH_STEP_RESET] = 1200 * MS,
+  [STIC_LOGITECH_STEP_DEMAND] = 300 * MS,  [STIC_LOGITECH_STEP_DIAGNOSE] = 1000 * MS,
+  [STIC_LOGITECH_STEP_FORMAT] = 20 * MS,   [STIC_LOGITECH_STEP_INFORM] = 500 * MS,
   [STIC_LOGITECH_STEP_STREAM] = 1000 * MS, /* for the first record */
 };
 
@@ -65,20 +65,12 @@ static bool begin_step(stic_logitech_protocol *p, int64_t now_ns)
     if (!port->set_line(port->context, false, false))
       enter(p, STIC_LOGITECH_STEP_RESET, now_ns);
     return true;
-  case STIC_LOGITECH_STEP_HOLD:
-    port->set_line(port->context, true, false);
-    return true;
-  case STIC_LOGITECH_STEP_LET_GO:
-    port->set_line(port->context, true, true);
-    return true;
-  case STIC_LOGITECH_STEP_RESET:
-    return command(p, "*R");
-  case STIC_LOGITECH_STEP_DEMAND:
-    return command(p, "*D");
-  case STIC_LOGITECH_STEP_DIAGNOSE:
-    return command(p, "*" ENQ);
-  case STIC_LOGITECH_STEP_FORMAT:
-    return command(p, p->head ? "*H*G" : "*G");
+  case STIC_LOGITECH_STEP_HOLD: port->set_line(port->context, true, false); return true;
+  case STIC_LOGITECH_STEP_LET_GO: port->set_line(port->context, true, true); return true;
+  case STIC_LOGITECH_STEP_RESET: return command(p, "*R");
+  case STIC_LOGITECH_STEP_DEMAND: return command(p, "*D");
+  case STIC_LOGITECH_STEP_DIAGNOSE: return command(p, "*" ENQ);
+  case STIC_LOGITECH_STEP_FORMAT: return command(p, p->head ? "*H*G" : "*G");
   case STIC_LOGITECH_STEP_INFORM:
     /* After the format is set: its record size is what we ask for. */
     return command(p, "*m");
@@ -125,12 +117,9 @@ void stic_logitech_end(stic_logitech_protocol *p)
 static int reply_length(const stic_logitech_protocol *p)
 {
   switch (p->step) {
-  case STIC_LOGITECH_STEP_DIAGNOSE:
-    return 2;
-  case STIC_LOGITECH_STEP_INFORM:
-    return STIC_LOGITECH_INFORMATION;
-  default:
-    return 0;
+  case STIC_LOGITECH_STEP_DIAGNOSE: return 2;
+  case STIC_LOGITECH_STEP_INFORM: return STIC_LOGITECH_INFORMATION;
+  default: return 0;
   }
 }
 
@@ -169,8 +158,8 @@ static void name_parts(unsigned failed, char *out, size_t out_size)
   out[0] = '\0';
   for (int part = 0; part < STIC_LOGITECH_PARTS && used < out_size; part++) {
     if (failed & 1u << part) {
-      const int n = snprintf(out + used, out_size - used, "%s%s", used > 0 ? ", " : "",
-                             stic_logitech_part_name(part));
+      const int n =
+        snprintf(out + used, out_size - used, "%s%s", used > 0 ? ", " : "", stic_logitech_part_name(part));
 
       used += n > 0 ? (size_t)n : 0;
     }
@@ -219,8 +208,8 @@ static int take_information(stic_logitech_protocol *p, int64_t now_ns)
     enter(p, STIC_LOGITECH_STEP_INFORM, now_ns);
     return 0;
   }
-  stic_error_set(&p->error, STIC_NO_DEVICE, NULL, 0, "the unit sends records of %d bytes; expected %d (Euler)",
-                 size, STIC_LOGITECH_RECORD);
+  stic_error_set(&p->error, STIC_NO_DEVICE, NULL, 0,
+                 "the unit sends records of %d bytes; expected %d (Euler)", size, STIC_LOGITECH_RECORD);
   return fail(p, STIC_DRIVER_BAD_DATA);
 }
 
@@ -245,9 +234,7 @@ static int step_is_over(stic_logitech_protocol *p, int64_t now_ns)
   case STIC_LOGITECH_STEP_STREAM:
     stic_error_set(&p->error, STIC_NO_DEVICE, NULL, 0, "the unit answers but sends no records");
     return retry(p, now_ns);
-  default:
-    enter(p, (stic_logitech_step)(p->step + 1), now_ns);
-    return 0;
+  default: enter(p, (stic_logitech_step)(p->step + 1), now_ns); return 0;
   }
 }
 

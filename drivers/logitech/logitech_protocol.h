@@ -15,33 +15,33 @@ typedef struct stic_logitech_port {
 
 /* Steps of the start, in order; each ends when its time is over or its answer is there. */
 typedef enum stic_logitech_step {
-  STIC_LOGITECH_STEP_SELECT,    /* DTR low: 3D mode at the next reset */
-  STIC_LOGITECH_STEP_HOLD,      /* RTS low: reset */
-  STIC_LOGITECH_STEP_LET_GO,    /* RTS high */
-  STIC_LOGITECH_STEP_RESET,     /* *R */
-  STIC_LOGITECH_STEP_DEMAND,    /* *D */
-  STIC_LOGITECH_STEP_DIAGNOSE,  /* *ENQ */
-  STIC_LOGITECH_STEP_FORMAT,    /* *G */
-  STIC_LOGITECH_STEP_INFORM,    /* *m */
-  STIC_LOGITECH_STEP_STREAM     /* *S, until the end */
+  STIC_LOGITECH_STEP_SELECT,   /* DTR low: 3D mode at the next reset */
+  STIC_LOGITECH_STEP_HOLD,     /* RTS low: reset */
+  STIC_LOGITECH_STEP_LET_GO,   /* RTS high */
+  STIC_LOGITECH_STEP_RESET,    /* *R */
+  STIC_LOGITECH_STEP_DEMAND,   /* *D */
+  STIC_LOGITECH_STEP_DIAGNOSE, /* *ENQ */
+  STIC_LOGITECH_STEP_FORMAT,   /* *G */
+  STIC_LOGITECH_STEP_INFORM,   /* *m */
+  STIC_LOGITECH_STEP_STREAM    /* *S, until the end */
 } stic_logitech_step;
 
 #define STIC_LOGITECH_INFORMATION 30 /* bytes of the *m reply */
 
 typedef struct stic_logitech_protocol {
   stic_logitech_port port;
-  bool head;                  /* head-tracker mode is wanted */
+  bool head; /* head-tracker mode is wanted */
   stic_connection state;
-  stic_error error;           /* why stic_logitech_advance() failed */
-  char notice[160];           /* what is wrong but no hindrance; "" nothing */
-  int firmware;               /* index that the unit tells; -1: not known */
+  stic_error error; /* why stic_logitech_advance() failed */
+  char notice[160]; /* what is wrong but no hindrance; "" nothing */
+  int firmware;     /* index that the unit tells; -1: not known */
   stic_logitech_stream stream;
   /* Below: inside. */
   stic_logitech_step step;
   int64_t step_end_ns;
-  int attempt;                /* of the whole start, from 0 */
-  int asked;                  /* how often this step's question was put */
-  int refused_size;           /* record size of the last *m reply that was not ours */
+  int attempt;      /* of the whole start, from 0 */
+  int asked;        /* how often this step's question was put */
+  int refused_size; /* record size of the last *m reply that was not ours */
   uint8_t reply[STIC_LOGITECH_INFORMATION];
   int reply_count;
 } stic_logitech_protocol;

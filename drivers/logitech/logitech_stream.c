@@ -51,7 +51,8 @@ static double seconds_between(const stic_device_sample *from, const stic_device_
 }
 
 /* The motion from one pose to another: m and, as a vector, rad. */
-static void difference(const stic_device_sample *from, const stic_device_sample *to, double step[3], double turn[3])
+static void difference(const stic_device_sample *from, const stic_device_sample *to, double step[3],
+                       double turn[3])
 {
   const double *q = from->orientation;
   const double back[4] = {-q[0], -q[1], -q[2], q[3]};
@@ -75,7 +76,8 @@ static bool is_near(const stic_device_sample *from, const stic_device_sample *to
   double step[3], turn[3];
 
   difference(from, to, step, turn);
-  return length(step) <= SPEED * seconds + POSITION_NOISE && length(turn) <= TURN_RATE * seconds + ANGLE_NOISE;
+  return length(step) <= SPEED * seconds + POSITION_NOISE &&
+         length(turn) <= TURN_RATE * seconds + ANGLE_NOISE;
 }
 
 /* Whether a pose lies about where the motion so far leads. */

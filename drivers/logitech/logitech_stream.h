@@ -25,16 +25,16 @@ enum {
 /* All zero is a stream that has seen nothing. Counters are read-only outside. */
 typedef struct stic_logitech_stream {
   stic_logitech_decoder decoder;
-  int64_t jumps;             /* poses dropped because the next ones deny them */
-  uint64_t sequence;         /* of records, dropped ones too */
-  int64_t last_ns;           /* of the last sample given out */
-  bool acquired;             /* `pose` is one that was given out as tracked */
-  bool following;            /* ... and tracked ever since: the next must fit its motion */
+  int64_t jumps;     /* poses dropped because the next ones deny them */
+  uint64_t sequence; /* of records, dropped ones too */
+  int64_t last_ns;   /* of the last sample given out */
+  bool acquired;     /* `pose` is one that was given out as tracked */
+  bool following;    /* ... and tracked ever since: the next must fit its motion */
   stic_device_sample pose;
   double velocity[3], turn_rate[3]; /* of `pose`, m/s, rad/s */
-  bool doubted;              /* `doubt` waits for the next record to confirm it */
+  bool doubted;                     /* `doubt` waits for the next record to confirm it */
   stic_device_sample doubt;
-  bool pending;              /* `next` is to be given out before any further byte */
+  bool pending; /* `next` is to be given out before any further byte */
   stic_device_sample next;
   uint32_t buttons, candidate; /* given out; and those that may become so */
   int candidate_count;

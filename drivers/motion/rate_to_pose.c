@@ -55,7 +55,8 @@ static void follow_zero(stic_rate_to_pose *r, const double raw[STIC_RATE_AXES], 
   for (int i = 0; i < STIC_RATE_AXES; i++) {
     r->still_low[i] = raw[i] < r->still_low[i] ? raw[i] : r->still_low[i];
     r->still_high[i] = raw[i] > r->still_high[i] ? raw[i] : r->still_high[i];
-    if (r->still_high[i] - r->still_low[i] > STILL_PART * dead_zone(r, i) || fabs(raw[i]) > 2 * dead_zone(r, i)) {
+    if (r->still_high[i] - r->still_low[i] > STILL_PART * dead_zone(r, i) ||
+        fabs(raw[i]) > 2 * dead_zone(r, i)) {
       restart_stillness(r, raw, t_ns);
       return;
     }

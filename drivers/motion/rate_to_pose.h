@@ -5,14 +5,14 @@
 #include "../driver.h"
 
 typedef struct stic_rate_settings {
-  double linear, angular;      /* factors on the velocities, default 1 */
-  double dead_zone[2];         /* m/s, rad/s: per axis, no motion below, less by it above; default 0.002, 0.02 */
-  bool auto_zero;              /* default true: what stands still below twice the dead zone for 1 s is drift */
-  double home_position[3];     /* m, where it starts and where a reset brings it; default 0 */
-  double home_orientation[4];  /* default no turn */
-  uint32_t clutch, reset;      /* buttons, default 4 and 2: pressed, the clutch holds the pose; pressing reset
+  double linear, angular;  /* factors on the velocities, default 1 */
+  double dead_zone[2];     /* m/s, rad/s: per axis, no motion below, less by it above; default 0.002, 0.02 */
+  bool auto_zero;          /* default true: what stands still below twice the dead zone for 1 s is drift */
+  double home_position[3]; /* m, where it starts and where a reset brings it; default 0 */
+  double home_orientation[4]; /* default no turn */
+  uint32_t clutch, reset;     /* buttons, default 4 and 2: pressed, the clutch holds the pose; pressing reset
                                 * brings it home */
-  int64_t hold_ns;             /* a velocity holds until the next sample, but no longer; default 100 ms */
+  int64_t hold_ns;            /* a velocity holds until the next sample, but no longer; default 100 ms */
 } stic_rate_settings;
 
 #define STIC_RATE_AXES 6

@@ -11,12 +11,12 @@
 #define STIC_TRACKER_BUTTONS 3 /* grip, reset, clutch: bits 0, 1, 2 */
 
 typedef struct stic_tracker_frame {
-  double axes[9];         /* device to room, a proper rotation, row by row: the room's x, y, z in the device's
+  double axes[9];      /* device to room, a proper rotation, row by row: the room's x, y, z in the device's
                            * axes; default the identity */
-  double hand_axes[9];    /* the hand's axes in those of the moving part, a proper rotation (columns: the hand's
+  double hand_axes[9]; /* the hand's axes in those of the moving part, a proper rotation (columns: the hand's
                            * x, y, z); default the inverse of `axes`: a device at its own zero is a hand at zero */
-  double scale;           /* room metres per device metre, > 0, default 1 */
-  double offset[3];       /* m, where the device's origin is in the room, default 0 */
+  double scale;        /* room metres per device metre, > 0, default 1 */
+  double offset[3];    /* m, where the device's origin is in the room, default 0 */
   int buttons[STIC_TRACKER_BUTTONS]; /* bit 0..31 of the device that is grip, reset, clutch; -1: none;
                                       * default 0, 1, 2 */
 } stic_tracker_frame;

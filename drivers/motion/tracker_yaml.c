@@ -41,36 +41,46 @@ typedef enum key {
 typedef enum key_type { TYPE_MAPPING, TYPE_NUMBERS, TYPE_AXES, TYPE_BUTTON, TYPE_SWITCH } key_type;
 
 typedef struct key_row {
-  const char *path;  /* "tracker.filter.beta" */
+  const char *path; /* "tracker.filter.beta" */
   key parent;
   key_type type;
-  size_t offset;     /* of the value in stic_tracker_settings */
-  int count;         /* of numbers */
+  size_t offset; /* of the value in stic_tracker_settings */
+  int count;     /* of numbers */
   double low, high;
-  bool above_low;    /* `low` itself is refused */
+  bool above_low; /* `low` itself is refused */
   const char *unit;
 } key_row;
 
 static const key_row rows[KEY_COUNT] = {
   [KEY_TRACKER] = {"tracker", KEY_COUNT, TYPE_MAPPING, 0, 0, 0, 0, false, ""},
   [KEY_AXES] = {"tracker.axes", KEY_TRACKER, TYPE_AXES, FIELD(frame.axes), 9, -1, 1, false, ""},
-  [KEY_HAND_AXES] = {"tracker.hand_axes", KEY_TRACKER, TYPE_AXES, FIELD(frame.hand_axes), 9, -1, 1, false, ""},
+  [KEY_HAND_AXES] = {"tracker.hand_axes", KEY_TRACKER, TYPE_AXES, FIELD(frame.hand_axes), 9, -1, 1, false,
+                     ""},
   [KEY_SCALE] = {"tracker.scale", KEY_TRACKER, TYPE_NUMBERS, FIELD(frame.scale), 1, 1e-3, 1e3, false, ""},
-  [KEY_OFFSET] = {"tracker.offset", KEY_TRACKER, TYPE_NUMBERS, FIELD(frame.offset), 3, -PLACE, PLACE, false, "m"},
+  [KEY_OFFSET] = {"tracker.offset", KEY_TRACKER, TYPE_NUMBERS, FIELD(frame.offset), 3, -PLACE, PLACE, false,
+                  "m"},
   [KEY_BUTTONS] = {"tracker.buttons", KEY_TRACKER, TYPE_MAPPING, 0, 0, 0, 0, false, ""},
-  [KEY_GRIP] = {"tracker.buttons.grip", KEY_BUTTONS, TYPE_BUTTON, FIELD(frame.buttons[0]), 1, 0, 31, false, ""},
-  [KEY_RESET] = {"tracker.buttons.reset", KEY_BUTTONS, TYPE_BUTTON, FIELD(frame.buttons[1]), 1, 0, 31, false, ""},
-  [KEY_CLUTCH] = {"tracker.buttons.clutch", KEY_BUTTONS, TYPE_BUTTON, FIELD(frame.buttons[2]), 1, 0, 31, false, ""},
+  [KEY_GRIP] = {"tracker.buttons.grip", KEY_BUTTONS, TYPE_BUTTON, FIELD(frame.buttons[0]), 1, 0, 31, false,
+                ""},
+  [KEY_RESET] = {"tracker.buttons.reset", KEY_BUTTONS, TYPE_BUTTON, FIELD(frame.buttons[1]), 1, 0, 31, false,
+                 ""},
+  [KEY_CLUTCH] = {"tracker.buttons.clutch", KEY_BUTTONS, TYPE_BUTTON, FIELD(frame.buttons[2]), 1, 0, 31,
+                  false, ""},
   [KEY_FILTER] = {"tracker.filter", KEY_TRACKER, TYPE_MAPPING, 0, 0, 0, 0, false, ""},
-  [KEY_MIN_CUTOFF] = {"tracker.filter.min_cutoff", KEY_FILTER, TYPE_NUMBERS, FIELD(filter.min_cutoff), 2, 0, 1e3, true, "Hz"},
+  [KEY_MIN_CUTOFF] = {"tracker.filter.min_cutoff", KEY_FILTER, TYPE_NUMBERS, FIELD(filter.min_cutoff), 2, 0,
+                      1e3, true, "Hz"},
   [KEY_BETA] = {"tracker.filter.beta", KEY_FILTER, TYPE_NUMBERS, FIELD(filter.beta), 2, 0, 1e3, false, ""},
-  [KEY_DERIVATIVE_CUTOFF] = {"tracker.filter.derivative_cutoff", KEY_FILTER, TYPE_NUMBERS, FIELD(filter.derivative_cutoff), 2, 0, 1e3, true, "Hz"},
+  [KEY_DERIVATIVE_CUTOFF] = {"tracker.filter.derivative_cutoff", KEY_FILTER, TYPE_NUMBERS,
+                             FIELD(filter.derivative_cutoff), 2, 0, 1e3, true, "Hz"},
   [KEY_RATE] = {"tracker.rate", KEY_TRACKER, TYPE_MAPPING, 0, 0, 0, 0, false, ""},
   [KEY_LINEAR] = {"tracker.rate.linear", KEY_RATE, TYPE_NUMBERS, FIELD(rate.linear), 1, 0, 1e3, false, ""},
   [KEY_ANGULAR] = {"tracker.rate.angular", KEY_RATE, TYPE_NUMBERS, FIELD(rate.angular), 1, 0, 1e3, false, ""},
-  [KEY_DEAD_ZONE] = {"tracker.rate.dead_zone", KEY_RATE, TYPE_NUMBERS, FIELD(rate.dead_zone), 2, 0, 10, false, ""},
-  [KEY_AUTO_ZERO] = {"tracker.rate.auto_zero", KEY_RATE, TYPE_SWITCH, FIELD(rate.auto_zero), 0, 0, 0, false, ""},
-  [KEY_HOME] = {"tracker.rate.home", KEY_RATE, TYPE_NUMBERS, FIELD(rate.home_position), 3, -PLACE, PLACE, false, "m"},
+  [KEY_DEAD_ZONE] = {"tracker.rate.dead_zone", KEY_RATE, TYPE_NUMBERS, FIELD(rate.dead_zone), 2, 0, 10, false,
+                     ""},
+  [KEY_AUTO_ZERO] = {"tracker.rate.auto_zero", KEY_RATE, TYPE_SWITCH, FIELD(rate.auto_zero), 0, 0, 0, false,
+                     ""},
+  [KEY_HOME] = {"tracker.rate.home", KEY_RATE, TYPE_NUMBERS, FIELD(rate.home_position), 3, -PLACE, PLACE,
+                false, "m"},
 };
 
 typedef struct reading {
@@ -121,9 +131,7 @@ static const char *expected_text(const key_row *row, char *out, size_t out_size)
 
   stic_number_range_text(row->low, row->high, row->above_low, row->unit, range, sizeof range);
   switch (row->type) {
-  case TYPE_MAPPING:
-    snprintf(out, out_size, "a mapping of keys");
-    break;
+  case TYPE_MAPPING: snprintf(out, out_size, "a mapping of keys"); break;
   case TYPE_NUMBERS:
     if (row->count == 1)
       snprintf(out, out_size, "a number %s", range);
@@ -131,14 +139,11 @@ static const char *expected_text(const key_row *row, char *out, size_t out_size)
       snprintf(out, out_size, "a list of %d numbers, each %s", row->count, range);
     break;
   case TYPE_AXES:
-    snprintf(out, out_size, "three of x, y, z, -x, -y, -z, or nine numbers row by row, that make a rotation and no mirror");
+    snprintf(out, out_size,
+             "three of x, y, z, -x, -y, -z, or nine numbers row by row, that make a rotation and no mirror");
     break;
-  case TYPE_BUTTON:
-    snprintf(out, out_size, "a bit from 0 to 31, or none");
-    break;
-  case TYPE_SWITCH:
-    snprintf(out, out_size, "true or false");
-    break;
+  case TYPE_BUTTON: snprintf(out, out_size, "a bit from 0 to 31, or none"); break;
+  case TYPE_SWITCH: snprintf(out, out_size, "true or false"); break;
   }
   return out;
 }
@@ -147,8 +152,8 @@ static void bad_value(reading *r, key k, const yaml_node_t *node)
 {
   char found[80], expected[160];
 
-  bad(r, stic_yaml_line(node), "%s is %s; expected %s", rows[k].path, stic_yaml_found(node, found, sizeof found),
-      expected_text(&rows[k], expected, sizeof expected));
+  bad(r, stic_yaml_line(node), "%s is %s; expected %s", rows[k].path,
+      stic_yaml_found(node, found, sizeof found), expected_text(&rows[k], expected, sizeof expected));
 }
 
 /* ---- values ------------------------------------------------------------------------------ */
@@ -285,8 +290,8 @@ static void unknown_key(reading *r, key parent, const yaml_node_t *name)
     if (rows[k].parent == parent)
       used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", used > 0 ? ", " : "", last_name(k));
   }
-  bad(r, stic_yaml_line(name), "unknown key %s in %s; expected %s", stic_yaml_found(name, found, sizeof found),
-      rows[parent].path, names);
+  bad(r, stic_yaml_line(name), "unknown key %s in %s; expected %s",
+      stic_yaml_found(name, found, sizeof found), rows[parent].path, names);
 }
 
 static void read_value(reading *r, key k, const yaml_node_t *node);
@@ -308,7 +313,8 @@ static void read_mapping(reading *r, key k, const yaml_node_t *node)
     bad_value(r, k, node);
     return;
   }
-  for (const yaml_node_pair_t *pair = node->data.mapping.pairs.start; pair < node->data.mapping.pairs.top; pair++) {
+  for (const yaml_node_pair_t *pair = node->data.mapping.pairs.start; pair < node->data.mapping.pairs.top;
+       pair++) {
     const yaml_node_t *name = stic_yaml_node(&r->yaml, pair->key);
     const key child = child_named(k, name);
 
@@ -322,21 +328,11 @@ static void read_mapping(reading *r, key k, const yaml_node_t *node)
 static void read_value(reading *r, key k, const yaml_node_t *node)
 {
   switch (rows[k].type) {
-  case TYPE_MAPPING:
-    read_mapping(r, k, node);
-    break;
-  case TYPE_NUMBERS:
-    read_numbers(r, k, node);
-    break;
-  case TYPE_AXES:
-    read_axes(r, k, node);
-    break;
-  case TYPE_BUTTON:
-    read_button(r, k, node);
-    break;
-  case TYPE_SWITCH:
-    read_switch(r, k, node);
-    break;
+  case TYPE_MAPPING: read_mapping(r, k, node); break;
+  case TYPE_NUMBERS: read_numbers(r, k, node); break;
+  case TYPE_AXES: read_axes(r, k, node); break;
+  case TYPE_BUTTON: read_button(r, k, node); break;
+  case TYPE_SWITCH: read_switch(r, k, node); break;
   }
 }
 
@@ -358,8 +354,10 @@ static void read_root(reading *r, const yaml_node_t *root)
     bad(r, stic_yaml_line(root), "expected a mapping with stiction: %d and tracker:", FORMAT_VERSION);
     return;
   }
-  for (const yaml_node_pair_t *pair = root->data.mapping.pairs.start; pair < root->data.mapping.pairs.top; pair++) {
-    const yaml_node_t *name = stic_yaml_node(&r->yaml, pair->key), *value = stic_yaml_node(&r->yaml, pair->value);
+  for (const yaml_node_pair_t *pair = root->data.mapping.pairs.start; pair < root->data.mapping.pairs.top;
+       pair++) {
+    const yaml_node_t *name = stic_yaml_node(&r->yaml, pair->key),
+                      *value = stic_yaml_node(&r->yaml, pair->value);
 
     if (is_text(name, "stiction")) {
       versioned = true;
@@ -399,7 +397,8 @@ static void complete(reading *r)
   }
 }
 
-stic_status stic_tracker_read(const char *path, bool required, stic_tracker_settings *settings, stic_error *err)
+stic_status stic_tracker_read(const char *path, bool required, stic_tracker_settings *settings,
+                              stic_error *err)
 {
   reading r;
   char *text;

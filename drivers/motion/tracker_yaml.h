@@ -27,9 +27,9 @@
 
 typedef struct stic_tracker_settings {
   stic_tracker_frame frame;
-  bool filtered;                 /* default false */
+  bool filtered; /* default false */
   stic_one_euro_settings filter;
-  stic_rate_settings rate;       /* for STIC_DRIVER_RATE; its buttons are those after the frame's map */
+  stic_rate_settings rate; /* for STIC_DRIVER_RATE; its buttons are those after the frame's map */
 } stic_tracker_settings;
 
 void stic_tracker_settings_init(stic_tracker_settings *settings);
@@ -38,7 +38,8 @@ void stic_tracker_settings_init(stic_tracker_settings *settings);
  * is no section and `required` is false. The first problem is told with its line. Other keys of the file are
  * for the reader of scenes. Errors: STIC_BAD_INPUT, STIC_NO_MEMORY; `*settings` is as after init then. Real-time:
  * no. */
-stic_status stic_tracker_read(const char *path, bool required, stic_tracker_settings *settings, stic_error *err);
+stic_status stic_tracker_read(const char *path, bool required, stic_tracker_settings *settings,
+                              stic_error *err);
 
 /* What a device's samples go through on their way to the solver. */
 typedef struct stic_tracker {

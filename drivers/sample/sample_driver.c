@@ -17,9 +17,9 @@
 /* `base` comes first, so that a pointer to one is a pointer to the other. All memory is here. */
 typedef struct sample_device {
   stic_device base;
-  double rate;       /* Hz */
-  int64_t start_ns;  /* CLOCK_MONOTONIC */
-  int64_t due_ns;    /* of the next sample */
+  double rate;      /* Hz */
+  int64_t start_ns; /* CLOCK_MONOTONIC */
+  int64_t due_ns;   /* of the next sample */
   uint64_t sequence;
 } sample_device;
 
@@ -79,9 +79,8 @@ static void sample_describe(const stic_device *device, char *out, size_t out_siz
   snprintf(out, out_size, "sample hand on a circle, %g a second", ((const sample_device *)device)->rate);
 }
 
-static const stic_spec_key keys[] = {
-  {"rate", false, "samples a second, 1 to 1000, default 50"},
-  {NULL, false, NULL}};
+static const stic_spec_key keys[] = {{"rate", false, "samples a second, 1 to 1000, default 50"},
+                                     {NULL, false, NULL}};
 
 const stic_driver stic_sample_driver = {
   .name = "sample",

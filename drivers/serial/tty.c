@@ -17,7 +17,8 @@ static stic_status refuse(const char *path, const char *what, int problem, stic_
   const char *hint = "";
 
   if (problem == EACCES)
-    hint = "; serial ports belong to a group: see ls -l on the port, then 'usermod -aG GROUP USER' and a new login";
+    hint =
+      "; serial ports belong to a group: see ls -l on the port, then 'usermod -aG GROUP USER' and a new login";
   else if (problem == EBUSY)
     hint = "; another program has it open";
   else if (problem == ENOTTY)
@@ -28,8 +29,9 @@ static stic_status refuse(const char *path, const char *what, int problem, stic_
 static bool is_as_wanted(const struct termios *t, speed_t speed)
 {
   return cfgetispeed(t) == speed && cfgetospeed(t) == speed && (t->c_cflag & CSIZE) == CS8 &&
-         !(t->c_cflag & (PARENB | CSTOPB)) && (t->c_cflag & CREAD) && !(t->c_lflag & (ICANON | ECHO | ISIG)) &&
-         !(t->c_iflag & (IXON | IXOFF | ICRNL | INLCR | ISTRIP)) && !(t->c_oflag & OPOST);
+         !(t->c_cflag & (PARENB | CSTOPB)) && (t->c_cflag & CREAD) &&
+         !(t->c_lflag & (ICANON | ECHO | ISIG)) && !(t->c_iflag & (IXON | IXOFF | ICRNL | INLCR | ISTRIP)) &&
+         !(t->c_oflag & OPOST);
 }
 
 /* All flags from nothing, so that no flow control or translation is left from before. */
@@ -48,9 +50,10 @@ static stic_status set_raw(stic_tty *tty, const char *path, speed_t speed, stic_
       tcgetattr(tty->fd, &t) != 0)
     return refuse(path, "cannot set up the serial port", errno, err);
   if (!is_as_wanted(&t, speed))
-    return stic_error_set(err, STIC_NO_DEVICE, path, 0,
-                          "the serial port does not take the speed or format; expected 8 data bits, no parity, "
-                          "1 stop bit");
+    return stic_error_set(
+      err, STIC_NO_DEVICE, path, 0,
+      "the serial port does not take the speed or format; expected 8 data bits, no parity, "
+      "1 stop bit");
   return STIC_OK;
 }
 

@@ -64,8 +64,7 @@ stic_spacemouse_report stic_spacemouse_decode(stic_spacemouse *mouse, const uint
       return STIC_SPACEMOUSE_BAD;
     mouse->battery = report[1];
     return STIC_SPACEMOUSE_BATTERY;
-  default:
-    return STIC_SPACEMOUSE_OTHER;
+  default: return STIC_SPACEMOUSE_OTHER;
   }
 }
 

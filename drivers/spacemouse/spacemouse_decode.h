@@ -14,8 +14,8 @@ typedef struct stic_spacemouse {
 } stic_spacemouse;
 
 typedef enum stic_spacemouse_report {
-  STIC_SPACEMOUSE_BAD,    /* shorter than its kind must be, or a value that cannot be; nothing changed */
-  STIC_SPACEMOUSE_OTHER,  /* a kind that says nothing to us */
+  STIC_SPACEMOUSE_BAD,   /* shorter than its kind must be, or a value that cannot be; nothing changed */
+  STIC_SPACEMOUSE_OTHER, /* a kind that says nothing to us */
   STIC_SPACEMOUSE_MOTION,
   STIC_SPACEMOUSE_KEYS,
   STIC_SPACEMOUSE_BATTERY

@@ -26,7 +26,8 @@ static bool spacemouse_match(const stic_device_id *id)
   const bool cap = (id->usage_page == 0x01 && id->usage == MULTI_AXIS_CONTROLLER) ||
                    (id->usage_page == 0 && id->usage == 0); /* the libusb backend does not tell */
 
-  return cap && !stic_spacemouse_never(id->vendor, id->product) && stic_spacemouse_find(id->vendor, id->product);
+  return cap && !stic_spacemouse_never(id->vendor, id->product) &&
+         stic_spacemouse_find(id->vendor, id->product);
 }
 
 /* ---- samples ----------------------------------------------------------------------------- */
@@ -60,17 +61,11 @@ static bool take_report(stic_device *device, const stic_hid_link *link, const ui
   if (t_ns - d->motion_ns >= SILENCE_NS)
     stic_spacemouse_rest(&d->mouse);
   switch (stic_spacemouse_decode(&d->mouse, report, length)) {
-  case STIC_SPACEMOUSE_MOTION:
-    d->motion_ns = t_ns;
-    break;
-  case STIC_SPACEMOUSE_KEYS:
-    break;
-  case STIC_SPACEMOUSE_BAD:
-    device->counters.bad_records++;
-    return false;
+  case STIC_SPACEMOUSE_MOTION: d->motion_ns = t_ns; break;
+  case STIC_SPACEMOUSE_KEYS: break;
+  case STIC_SPACEMOUSE_BAD: device->counters.bad_records++; return false;
   case STIC_SPACEMOUSE_OTHER:
-  case STIC_SPACEMOUSE_BATTERY:
-    return false;
+  case STIC_SPACEMOUSE_BATTERY: return false;
   }
   make_sample(d, t_ns, sample);
   return true;
@@ -78,7 +73,8 @@ static bool take_report(stic_device *device, const stic_hid_link *link, const ui
 
 static int spacemouse_poll(stic_device *device, int64_t until_ns, stic_device_sample *samples, int capacity)
 {
-  return stic_hid_drain(&((spacemouse_device *)device)->link, device, take_report, until_ns, samples, capacity);
+  return stic_hid_drain(&((spacemouse_device *)device)->link, device, take_report, until_ns, samples,
+                        capacity);
 }
 
 /* ---- opening and closing ----------------------------------------------------------------- */
@@ -144,14 +140,11 @@ static void spacemouse_describe(const stic_device *device, char *out, size_t out
   stic_hid_describe(&d->link, stic_spacemouse_find(node->vendor, node->product)->name, where, sizeof where);
   if (d->mouse.battery >= 0)
     snprintf(battery, sizeof battery, ", battery %d %%", d->mouse.battery);
-  snprintf(out, out_size, "%s, %g m/s and %g rad/s at full deflection%s", where, d->rates.speed, d->rates.turn,
-           battery);
+  snprintf(out, out_size, "%s, %g m/s and %g rad/s at full deflection%s", where, d->rates.speed,
+           d->rates.turn, battery);
 }
 
-static const stic_spec_key keys[] = {
-  STIC_HID_SPEC_KEYS,
-  STIC_HID_RATE_KEYS,
-  {NULL, false, NULL}};
+static const stic_spec_key keys[] = {STIC_HID_SPEC_KEYS, STIC_HID_RATE_KEYS, {NULL, false, NULL}};
 
 const stic_driver stic_spacemouse_driver = {
   .name = "spacemouse",

@@ -30,8 +30,8 @@ static const stic_spacemouse_model models[] = {
 #define MODEL_COUNT ((int)(sizeof models / sizeof models[0]))
 
 /* CadMouse, keyboards, numeric pads, receivers of these; c641 is said to be one of them. */
-static const uint16_t never[] = {0xc62c, 0xc641, 0xc650, 0xc651, 0xc654, 0xc655, 0xc656,
-                                 0xc657, 0xc658, 0xc664, 0xc665, 0xc668};
+static const uint16_t never[] = {0xc62c, 0xc641, 0xc650, 0xc651, 0xc654, 0xc655,
+                                 0xc656, 0xc657, 0xc658, 0xc664, 0xc665, 0xc668};
 
 const stic_spacemouse_model *stic_spacemouse_model_at(int index)
 {

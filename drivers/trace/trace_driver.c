@@ -20,13 +20,13 @@ typedef struct trace_device {
   stic_trace_reader *reader;
   double speed;
   bool loop;
-  bool begun;             /* the first sample has been given out or is pending */
-  int64_t start_ns;       /* CLOCK_MONOTONIC of the trace's first sample */
-  int64_t first_ns;       /* the trace's own time of its first sample, */
-  int64_t last_ns;        /* of the last one read, */
-  int64_t interval_ns;    /* and between the last two */
-  int64_t shift_ns;       /* added to the trace's times: the rounds before */
-  bool pending;           /* `next` waits to be given out */
+  bool begun;          /* the first sample has been given out or is pending */
+  int64_t start_ns;    /* CLOCK_MONOTONIC of the trace's first sample */
+  int64_t first_ns;    /* the trace's own time of its first sample, */
+  int64_t last_ns;     /* of the last one read, */
+  int64_t interval_ns; /* and between the last two */
+  int64_t shift_ns;    /* added to the trace's times: the rounds before */
+  bool pending;        /* `next` waits to be given out */
   stic_device_sample next;
   uint64_t sequence;
   char path[PATH_ROOM];
@@ -47,7 +47,8 @@ static stic_status trace_open(const stic_device_spec *spec, stic_device **device
   stic_status status;
 
   if (!path || strlen(path) >= PATH_ROOM)
-    return stic_error_set(err, STIC_USAGE, NULL, 0, "device trace: expected trace:file=FILE, '-' for standard input");
+    return stic_error_set(err, STIC_USAGE, NULL, 0,
+                          "device trace: expected trace:file=FILE, '-' for standard input");
   if (strcmp(path, "-") == 0 && stic_spec_flag(spec, "loop"))
     return stic_error_set(err, STIC_USAGE, NULL, 0, "device trace: standard input cannot loop");
   d = calloc(1, sizeof *d);
@@ -127,16 +128,12 @@ static int read_next(trace_device *d, int64_t until_ns)
 
   while (wait_for_input(d, until_ns)) {
     switch (stic_trace_next(d->reader, &sample, &d->base.error)) {
-    case STIC_TRACE_SAMPLE:
-      take_sample(d, &sample);
-      return 1;
+    case STIC_TRACE_SAMPLE: take_sample(d, &sample); return 1;
     case STIC_TRACE_WAIT:
       if (stic_clock_ns() >= until_ns)
         return 0;
       break;
-    case STIC_TRACE_BAD:
-      d->base.state = STIC_CONNECTION_LOST;
-      return STIC_DRIVER_BAD_DATA;
+    case STIC_TRACE_BAD: d->base.state = STIC_CONNECTION_LOST; return STIC_DRIVER_BAD_DATA;
     case STIC_TRACE_END:
       if (!d->loop) {
         d->base.state = STIC_CONNECTION_CLOSED;

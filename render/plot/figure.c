@@ -115,7 +115,8 @@ static void path_block(const stic_figure *f, int who, bool *scratch, stic_outfil
     const stic_plot_row *r = row_at(f, i);
 
     if (f->keep[i])
-      stic_outfile_print(out, "%.9g %.9g %.9g %.9g\n", r->t, x_of(f, r, who), y_of(f, r, who), angle_of(f, r, who));
+      stic_outfile_print(out, "%.9g %.9g %.9g %.9g\n", r->t, x_of(f, r, who), y_of(f, r, who),
+                         angle_of(f, r, who));
   }
   end_block(out);
 }
@@ -128,7 +129,8 @@ static void landing_block(const stic_figure *f, stic_outfile *out)
   stic_outfile_print(out, "# rest after a slip: x/m y/m\n");
   for (int64_t i = 0; i < row_count(f) && count < STIC_CURVE_POINTS; i++) {
     if (slipped(f, i)) {
-      stic_outfile_print(out, "%.9g %.9g\n", x_of(f, row_at(f, i), BLOCK_OBJECT), y_of(f, row_at(f, i), BLOCK_OBJECT));
+      stic_outfile_print(out, "%.9g %.9g\n", x_of(f, row_at(f, i), BLOCK_OBJECT),
+                         y_of(f, row_at(f, i), BLOCK_OBJECT));
       count++;
     }
   }
@@ -188,10 +190,10 @@ void stic_figure_data(const stic_figure *f, stic_outfile *out)
 #define BOTTOM 8.5
 #define STRIP 3.6
 #define GAP 2.2
-#define PLANE 38.0     /* panel of the plane, and what is under it for its own axis */
+#define PLANE 38.0 /* panel of the plane, and what is under it for its own axis */
 #define PLANE_FOOT 10.0
 #define KEY_LINE 4.2
-#define KEY_TOP 3.0    /* middle of the first line of the key */
+#define KEY_TOP 3.0 /* middle of the first line of the key */
 #define TIME_PANEL 20.0
 #define FORCE_PANEL 32.0
 
@@ -223,20 +225,28 @@ static void script_head(const stic_figure *f, stic_outfile *out)
   char stem[520];
 
   quoted(f->stem, stem, sizeof stem);
-  stic_outfile_print(out, "# Figure %d. Run as: gnuplot -e \"format='pdf'\" FILE (svg, pdf or png)\n", f->number);
+  stic_outfile_print(out, "# Figure %d. Run as: gnuplot -e \"format='pdf'\" FILE (svg, pdf or png)\n",
+                     f->number);
   stic_outfile_print(out, "if (!exists('format')) format = 'svg'\n");
-  stic_outfile_print(out, "if (format eq 'svg') set terminal svg size %.0f,%.0f font 'Helvetica,10.7' enhanced background 'white'\n",
-                     WIDTH / 25.4 * 96, height / 25.4 * 96);
-  stic_outfile_print(out, "if (format eq 'pdf') set terminal pdfcairo size %.2fcm,%.2fcm font 'Helvetica,8' fontscale 0.78 linewidth 1.3 pointscale 0.6 enhanced\n",
-                     WIDTH / 10, height / 10);
-  stic_outfile_print(out, "if (format eq 'png') set terminal pngcairo size %.0f,%.0f font 'Helvetica,8' fontscale 3.125 linewidth 3.125 pointscale 3.125 enhanced background 'white'\n",
-                     WIDTH / 25.4 * 300, height / 25.4 * 300);
+  stic_outfile_print(
+    out,
+    "if (format eq 'svg') set terminal svg size %.0f,%.0f font 'Helvetica,10.7' enhanced background 'white'\n",
+    WIDTH / 25.4 * 96, height / 25.4 * 96);
+  stic_outfile_print(
+    out,
+    "if (format eq 'pdf') set terminal pdfcairo size %.2fcm,%.2fcm font 'Helvetica,8' fontscale 0.78 linewidth 1.3 pointscale 0.6 enhanced\n",
+    WIDTH / 10, height / 10);
+  stic_outfile_print(
+    out,
+    "if (format eq 'png') set terminal pngcairo size %.0f,%.0f font 'Helvetica,8' fontscale 3.125 linewidth 3.125 pointscale 3.125 enhanced background 'white'\n",
+    WIDTH / 25.4 * 300, height / 25.4 * 300);
   stic_outfile_print(out, "data = '%s.dat'\nset output '%s.'.format\n", stem, stem);
-  stic_outfile_print(out,
-                     "small = format eq 'svg' ? ',9.3' : ',7'\nset encoding utf8\nset border 3 lw 0.6 lc rgb '#333333'\nset tics nomirror out scale 0.4 font small\n"
-                     "set xtics offset 0,0.45\nset ytics offset 0.5,0\nset grid lw 0.4 lc rgb '#dddddd' lt 1\nunset key\n"
-                     "set lmargin at screen %.5f\nset rmargin at screen %.5f\nset y2range [0:1]\n",
-                     LEFT / WIDTH, 1 - RIGHT / WIDTH);
+  stic_outfile_print(
+    out,
+    "small = format eq 'svg' ? ',9.3' : ',7'\nset encoding utf8\nset border 3 lw 0.6 lc rgb '#333333'\nset tics nomirror out scale 0.4 font small\n"
+    "set xtics offset 0,0.45\nset ytics offset 0.5,0\nset grid lw 0.4 lc rgb '#dddddd' lt 1\nunset key\n"
+    "set lmargin at screen %.5f\nset rmargin at screen %.5f\nset y2range [0:1]\n",
+    LEFT / WIDTH, 1 - RIGHT / WIDTH);
   /* Told apart in grey print and by every kind of colour blindness: by dash and width as well as by colour. */
   stic_outfile_print(out, "set linetype 1 lc rgb '#008a64' lw 1 dt (6,3)\n"
                           "set linetype 2 lc rgb '#1f3850' lw 1.5 dt 1\n"
@@ -251,8 +261,8 @@ static void script_head(const stic_figure *f, stic_outfile *out)
 
 static void place(const stic_figure *f, double from_bottom, double height, stic_outfile *out)
 {
-  stic_outfile_print(out, "set bmargin at screen %.5f\nset tmargin at screen %.5f\n", from_bottom / height_of(f),
-                     (from_bottom + height) / height_of(f));
+  stic_outfile_print(out, "set bmargin at screen %.5f\nset tmargin at screen %.5f\n",
+                     from_bottom / height_of(f), (from_bottom + height) / height_of(f));
 }
 
 /* Low and high of a quantity of both hand and object. */
@@ -293,26 +303,32 @@ static void set_tics(const char *axis, const double range[2], int most, stic_out
 }
 
 /* Names of axes and entries of the key stand at fixed places, whatever the numbers need. */
-static void axis_name(const stic_figure *f, const char *text, double x, double y, bool upright, stic_outfile *out)
+static void axis_name(const stic_figure *f, const char *text, double x, double y, bool upright,
+                      stic_outfile *out)
 {
   stic_outfile_print(out, "set label '%s' at screen %.5f,%.5f center %s\n", text, x / WIDTH, y / height_of(f),
                      upright ? "rotate" : "");
 }
 
-static void key_line(const stic_figure *f, double x, int line, int linetype, const char *text, stic_outfile *out)
+static void key_line(const stic_figure *f, double x, int line, int linetype, const char *text,
+                     stic_outfile *out)
 {
   const double y = 1 - (KEY_TOP + line * KEY_LINE - 0.9) / height_of(f);
 
-  stic_outfile_print(out, "set arrow from screen %.5f,%.5f to screen %.5f,%.5f nohead lt %d\nset label '%s' at screen %.5f,%.5f\n",
-                     x / WIDTH, y, (x + 7) / WIDTH, y, linetype, text, (x + 8) / WIDTH, y);
+  stic_outfile_print(
+    out,
+    "set arrow from screen %.5f,%.5f to screen %.5f,%.5f nohead lt %d\nset label '%s' at screen %.5f,%.5f\n",
+    x / WIDTH, y, (x + 7) / WIDTH, y, linetype, text, (x + 8) / WIDTH, y);
 }
 
 static void key_slip(const stic_figure *f, double x, int line, stic_outfile *out)
 {
   const double y = 1 - (KEY_TOP + line * KEY_LINE - 0.9) / height_of(f), half = 0.9 / height_of(f);
 
-  stic_outfile_print(out, "set arrow from screen %.5f,%.5f to screen %.5f,%.5f nohead lt 7\nset label 'slip' at screen %.5f,%.5f\n",
-                     x / WIDTH, y - half, x / WIDTH, y + half, (x + 1.2) / WIDTH, y);
+  stic_outfile_print(
+    out,
+    "set arrow from screen %.5f,%.5f to screen %.5f,%.5f nohead lt 7\nset label 'slip' at screen %.5f,%.5f\n",
+    x / WIDTH, y - half, x / WIDTH, y + half, (x + 1.2) / WIDTH, y);
 }
 
 /* What stands on the page once is drawn with the first panel and then forgotten. */
@@ -347,14 +363,16 @@ static void script_plane(const stic_figure *f, double bottom, stic_outfile *out)
   key_line(f, LEFT, 0, 1, "hand", out);
   key_line(f, LEFT + 17, 0, 2, "object", out);
   key_slip(f, LEFT + 64, 0, out);
-  stic_outfile_print(out, "set label '' at screen %.5f,%.5f point lt 8\nset label 'rest after a slip' at screen %.5f,%.5f\n",
-                     (LEFT + 37.5) / WIDTH, 1 - (KEY_TOP - 0.9) / height_of(f), (LEFT + 39.5) / WIDTH,
-                     1 - (KEY_TOP - 0.9) / height_of(f));
-  stic_outfile_print(out,
-                     "set format x '%%g'\n"
-                     "plot data index %d using 2:3 with lines lt 1 title 'hand', data index %d using 2:3 with lines lt 2 title 'object', "
-                     "data index %d using 1:2 with points lt 8 title 'rest after a slip'\n",
-                     BLOCK_HAND, BLOCK_OBJECT, BLOCK_LANDINGS);
+  stic_outfile_print(
+    out, "set label '' at screen %.5f,%.5f point lt 8\nset label 'rest after a slip' at screen %.5f,%.5f\n",
+    (LEFT + 37.5) / WIDTH, 1 - (KEY_TOP - 0.9) / height_of(f), (LEFT + 39.5) / WIDTH,
+    1 - (KEY_TOP - 0.9) / height_of(f));
+  stic_outfile_print(
+    out,
+    "set format x '%%g'\n"
+    "plot data index %d using 2:3 with lines lt 1 title 'hand', data index %d using 2:3 with lines lt 2 title 'object', "
+    "data index %d using 1:2 with points lt 8 title 'rest after a slip'\n",
+    BLOCK_HAND, BLOCK_OBJECT, BLOCK_LANDINGS);
   forget(out);
 }
 
@@ -381,10 +399,11 @@ static void script_time_panel(const stic_figure *f, double bottom, const char *l
   set_range("y", range, out);
   set_tics("y", range, 4, out);
   axis_name(f, label, 2.2, bottom + TIME_PANEL / 2, true, out);
-  stic_outfile_print(out,
-                     "plot data index %d using 1:%d with lines lt 1 title 'hand', data index %d using 1:%d with lines lt 2 title 'object', "
-                     SLIP_MARKS "\n",
-                     BLOCK_HAND, column, BLOCK_OBJECT, column);
+  stic_outfile_print(
+    out,
+    "plot data index %d using 1:%d with lines lt 1 title 'hand', data index %d using 1:%d with lines lt 2 title 'object', " SLIP_MARKS
+    "\n",
+    BLOCK_HAND, column, BLOCK_OBJECT, column);
   forget(out);
 }
 
@@ -441,8 +460,9 @@ static void script_force_panel(const stic_figure *f, double bottom, int n, stic_
                        "data index %d using 1:(mu_d*$2) with lines lt 6 title 'dynamic limit', "
                        "data index %d using 1:(-mu_d*$2) with lines lt 6 title 'dynamic limit', ",
                        block, block, block, block);
-  stic_outfile_print(out, "data index %d using 1:2 with lines lt 3 title 'normal force', "
-                          "data index %d using 1:3 with lines lt 4 title 'friction', " SLIP_MARKS "\n",
+  stic_outfile_print(out,
+                     "data index %d using 1:2 with lines lt 3 title 'normal force', "
+                     "data index %d using 1:3 with lines lt 4 title 'friction', " SLIP_MARKS "\n",
                      block, block);
   forget(out);
 }
@@ -456,7 +476,9 @@ static void script_states(const stic_figure *f, stic_outfile *out)
   int number = 1;
 
   place(f, BOTTOM, STRIP, out);
-  stic_outfile_print(out, "set yrange [0:1]\nunset ytics\nunset grid\nset border 1 lw 0.6 lc rgb '#333333'\nset format x '%%g'\n");
+  stic_outfile_print(
+    out,
+    "set yrange [0:1]\nunset ytics\nunset grid\nset border 1 lw 0.6 lc rgb '#333333'\nset format x '%%g'\n");
   axis_name(f, "time / s", LEFT + (WIDTH - LEFT - RIGHT) / 2, 1.8, false, out);
   axis_name(f, "state", LEFT / 2 + 1, BOTTOM + STRIP / 2, false, out);
   for (int64_t i = 1; i <= row_count(f); i++) {
@@ -467,8 +489,10 @@ static void script_states(const stic_figure *f, stic_outfile *out)
       continue;
     /* Boxes too thin to print would only swell the file. */
     if (to - from > span / 1000)
-      stic_outfile_print(out, "set object %d rectangle from %.9g,0 to %.9g,1 fs solid noborder fc rgb '#%02x%02x%02x' behind\n",
-                         number++, from, to, grey[state], grey[state], grey[state]);
+      stic_outfile_print(
+        out,
+        "set object %d rectangle from %.9g,0 to %.9g,1 fs solid noborder fc rgb '#%02x%02x%02x' behind\n",
+        number++, from, to, grey[state], grey[state], grey[state]);
     if (to - from > STATE_LABEL_MIN * span)
       stic_outfile_print(out, "set label '%s' at %.9g,0.5 center\n", stic_state_name((stic_state)state),
                          (from + to) / 2);
@@ -492,7 +516,8 @@ static void script_forces(const stic_figure *f, stic_outfile *out)
 {
   time_axis(f, out);
   for (int n = 0; n < f->plot->surface_count; n++)
-    script_force_panel(f, BOTTOM + STRIP + GAP + (f->plot->surface_count - 1 - n) * (FORCE_PANEL + GAP), n, out);
+    script_force_panel(f, BOTTOM + STRIP + GAP + (f->plot->surface_count - 1 - n) * (FORCE_PANEL + GAP), n,
+                       out);
 }
 
 void stic_figure_script(const stic_figure *f, stic_outfile *out)

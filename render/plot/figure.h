@@ -10,7 +10,7 @@ typedef struct stic_figure {
   const stic_plot *plot;
   int number;
   int64_t from, to;
-  const char *stem; /* of the names of data and picture, for the script */
+  const char *stem;  /* of the names of data and picture, for the script */
   bool *jump, *keep; /* work space of to - from each */
   double *values;
 } stic_figure;

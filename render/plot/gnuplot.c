@@ -17,7 +17,8 @@ static void become_gnuplot(const char *folder, const char *script, const char *s
 {
   const int nothing = open("/dev/null", O_RDWR);
 
-  if (nothing < 0 || dup2(nothing, 0) < 0 || dup2(nothing, 1) < 0 || dup2(messages, 2) < 0 || chdir(folder) != 0)
+  if (nothing < 0 || dup2(nothing, 0) < 0 || dup2(nothing, 1) < 0 || dup2(messages, 2) < 0 ||
+      chdir(folder) != 0)
     _exit(1);
   setenv("LC_ALL", "C.UTF-8", 1); /* a point in numbers */
   execlp("gnuplot", "gnuplot", "-d", "-e", set_format, script, (char *)NULL);
@@ -45,10 +46,12 @@ static stic_status judge(int outcome, const char *words, stic_error *err)
   if (WIFEXITED(outcome) && WEXITSTATUS(outcome) == 0)
     return STIC_OK;
   if (WIFEXITED(outcome) && WEXITSTATUS(outcome) == NOT_THERE)
-    return stic_error_set(err, STIC_USAGE, NULL, 0,
-                          "plots need the program gnuplot, which is not there; install the package gnuplot-nox");
+    return stic_error_set(
+      err, STIC_USAGE, NULL, 0,
+      "plots need the program gnuplot, which is not there; install the package gnuplot-nox");
   if (WIFSIGNALED(outcome))
-    return stic_error_set(err, STIC_CANNOT_WRITE, NULL, 0, "gnuplot was ended by signal %d", WTERMSIG(outcome));
+    return stic_error_set(err, STIC_CANNOT_WRITE, NULL, 0, "gnuplot was ended by signal %d",
+                          WTERMSIG(outcome));
   return stic_error_set(err, STIC_CANNOT_WRITE, NULL, 0, "gnuplot failed: %s",
                         stic_error_quote(words, strlen(words), quoted, sizeof quoted));
 }

@@ -14,8 +14,8 @@
 /* Names while a figure is made: everything happens in a folder of its own. */
 typedef struct workshop {
   char folder[256];
-  char stem[208];       /* of the picture's name */
-  const char *format;   /* "svg", "pdf", "png" */
+  char stem[208];     /* of the picture's name */
+  const char *format; /* "svg", "pdf", "png" */
   const char *target;
 } workshop;
 
@@ -42,7 +42,8 @@ static void choose_rows(const stic_plot *p, const stic_plot_settings *s, int64_t
   *from = *to = 0;
   for (int64_t i = 0; i < p->count; i++) {
     const stic_plot_row *r = &p->rows[i];
-    const bool wanted = by_state ? !has_state || r->state == state_of(s->figure) : r->t >= s->from && r->t <= s->to;
+    const bool wanted =
+      by_state ? !has_state || r->state == state_of(s->figure) : r->t >= s->from && r->t <= s->to;
 
     if (wanted && *to == 0)
       *from = i;
@@ -99,7 +100,8 @@ static stic_status open_workshop(workshop *w, stic_error *err)
 
   snprintf(w->folder, sizeof w->folder, "%.200s/stiction-plot-XXXXXX", base && *base ? base : "/tmp");
   if (!mkdtemp(w->folder))
-    return stic_error_set(err, STIC_CANNOT_WRITE, w->folder, 0, "cannot make a temporary folder: %s", strerror(errno));
+    return stic_error_set(err, STIC_CANNOT_WRITE, w->folder, 0, "cannot make a temporary folder: %s",
+                          strerror(errno));
   return STIC_OK;
 }
 
@@ -217,11 +219,12 @@ stic_status stic_plot_draw(const stic_plot *p, const stic_plot_settings *s, cons
   assert(s->figure >= STIC_FIGURE_FIRST && s->figure <= STIC_FIGURE_LAST);
   choose_rows(p, s, &f.from, &f.to);
   if (status == STIC_OK && f.from == f.to)
-    status = stic_error_set(err, STIC_USAGE, NULL, 0, "the log has no rows from %g s to %g s; it goes from %g s to %g s",
-                            s->from, s->to, p->rows[0].t, p->rows[p->count - 1].t);
+    status = stic_error_set(err, STIC_USAGE, NULL, 0,
+                            "the log has no rows from %g s to %g s; it goes from %g s to %g s", s->from,
+                            s->to, p->rows[0].t, p->rows[p->count - 1].t);
   if (status == STIC_OK && (s->figure == 10 || s->figure == 12) && p->surface_count == 0)
-    status = stic_error_set(err, STIC_USAGE, NULL, 0, "figure %d shows forces, and nothing is touched in this log",
-                            s->figure);
+    status = stic_error_set(err, STIC_USAGE, NULL, 0,
+                            "figure %d shows forces, and nothing is touched in this log", s->figure);
   if (status != STIC_OK)
     return status;
   count = (size_t)(f.to - f.from);
@@ -229,7 +232,8 @@ stic_status stic_plot_draw(const stic_plot *p, const stic_plot_settings *s, cons
   f.jump = malloc(count * sizeof *f.jump);
   f.keep = malloc(2 * count * sizeof *f.keep);
   f.values = malloc(count * sizeof *f.values);
-  status = f.jump && f.keep && f.values ? open_workshop(&w, err) : stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
+  status = f.jump && f.keep && f.values ? open_workshop(&w, err)
+                                        : stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
   if (status == STIC_OK) {
     status = make(&f, &w, s->keep, err);
     close_workshop(&w);

@@ -32,9 +32,9 @@ bool stic_plot_is_cut(const stic_plot *plot);
 
 /* What to draw. */
 typedef struct stic_plot_settings {
-  int figure;         /* STIC_FIGURE_FIRST..STIC_FIGURE_LAST */
-  double from, to;    /* s of the log; from > to: the stretch with the figure's state */
-  bool keep;          /* leave script (.gp) and data (.dat) beside the picture */
+  int figure;      /* STIC_FIGURE_FIRST..STIC_FIGURE_LAST */
+  double from, to; /* s of the log; from > to: the stretch with the figure's state */
+  bool keep;       /* leave script (.gp) and data (.dat) beside the picture */
 } stic_plot_settings;
 
 /* Draws a figure into `path`, which ends in .svg, .pdf or .png; it appears whole or not at all. Errors:

@@ -52,7 +52,10 @@ static size_t utf8_length(const unsigned char *s, size_t left)
 {
   static const unsigned char low[] = {0xa0, 0x80, 0x90, 0x80}, high[] = {0xbf, 0x9f, 0xbf, 0x8f};
   static const unsigned char special[] = {0xe0, 0xed, 0xf0, 0xf4};
-  const size_t length = s[0] < 0x80 ? 1 : s[0] >= 0xc2 && s[0] < 0xe0 ? 2 : s[0] >= 0xe0 && s[0] < 0xf0 ? 3 : 4;
+  const size_t length = s[0] < 0x80                   ? 1
+                        : s[0] >= 0xc2 && s[0] < 0xe0 ? 2
+                        : s[0] >= 0xe0 && s[0] < 0xf0 ? 3
+                                                      : 4;
 
   if (s[0] == 0 || (s[0] >= 0x80 && s[0] < 0xc2) || s[0] > 0xf4 || length > left)
     return 0;
@@ -88,7 +91,11 @@ void stic_page_text(stic_outfile *out, const char *text)
   char *clean = stic_utf8_clean(text, strlen(text));
 
   for (const char *at = clean; at && *at; at++) {
-    const char *as = *at == '&' ? "&amp;" : *at == '<' ? "&lt;" : *at == '>' ? "&gt;" : *at == '"' ? "&quot;" : NULL;
+    const char *as = *at == '&'   ? "&amp;"
+                     : *at == '<' ? "&lt;"
+                     : *at == '>' ? "&gt;"
+                     : *at == '"' ? "&quot;"
+                                  : NULL;
 
     stic_outfile_write(out, as ? as : at, as ? strlen(as) : 1);
   }

@@ -104,7 +104,8 @@ static void add_event(stic_report *r, const stic_event *e)
   stic_column_f32(COLUMN(r, e_length), e->length);
 }
 
-void stic_report_add(stic_report *r, const stic_result *result, const stic_event *events, int count, int64_t frame_ns)
+void stic_report_add(stic_report *r, const stic_result *result, const stic_event *events, int count,
+                     int64_t frame_ns)
 {
   if (r->rows == 0)
     r->first_ns = result->t_ns;

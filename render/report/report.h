@@ -9,7 +9,7 @@
 
 /* What the page says of the run. All is borrowed until stic_report_close(). */
 typedef struct stic_report_settings {
-  const char *path;               /* of the page; "-": standard output */
+  const char *path; /* of the page; "-": standard output */
   const stic_scene *scene;
   const stic_settings *solver;
   const char *scene_path;         /* its text is shown */
@@ -17,7 +17,7 @@ typedef struct stic_report_settings {
   const char *command;            /* the command line; "": not known */
   const stic_override *overrides; /* may be NULL if override_count is 0 */
   int override_count;
-  int fps;                        /* frames a second of the page and of the video, 1..1000 */
+  int fps; /* frames a second of the page and of the video, 1..1000 */
 } stic_report_settings;
 
 /* Opaque. */

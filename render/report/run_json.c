@@ -28,9 +28,9 @@ static json_t *surface_json(const stic_surface *s)
   double normal[2];
 
   stic_normal_from_degrees(s->normal_deg, normal);
-  return json_pack("{s:o, s:o, s:o, s:f, s:f, s:f}", "name", text_json(s->name), "point", point_json(s->point),
-                   "normal", point_json(normal), "normal_deg", s->normal_deg, "mu_static", s->friction.mu_static,
-                   "mu_dynamic", s->friction.mu_dynamic);
+  return json_pack("{s:o, s:o, s:o, s:f, s:f, s:f}", "name", text_json(s->name), "point",
+                   point_json(s->point), "normal", point_json(normal), "normal_deg", s->normal_deg,
+                   "mu_static", s->friction.mu_static, "mu_dynamic", s->friction.mu_dynamic);
 }
 
 static json_t *scene_json(const stic_scene *s)
@@ -41,9 +41,10 @@ static json_t *scene_json(const stic_scene *s)
     json_array_append_new(vertices, point_json(s->vertices[i]));
   for (int i = 0; i < s->surface_count; i++)
     json_array_append_new(surfaces, surface_json(&s->surfaces[i]));
-  return json_pack("{s:o, s:o, s:o, s:f, s:f, s:f, s:s, s:o, s:f}", "name", text_json(s->name), "vertices", vertices,
-                   "surfaces", surfaces, "depth", s->depth, "stiffness", s->stiffness, "rotational_stiffness",
-                   s->rotational_stiffness, "hold", s->hold == STIC_HOLD_START ? "start" : "button", "holding_point",
+  return json_pack("{s:o, s:o, s:o, s:f, s:f, s:f, s:s, s:o, s:f}", "name", text_json(s->name), "vertices",
+                   vertices, "surfaces", surfaces, "depth", s->depth, "stiffness", s->stiffness,
+                   "rotational_stiffness", s->rotational_stiffness, "hold",
+                   s->hold == STIC_HOLD_START ? "start" : "button", "holding_point",
                    point_json(s->holding_point), "reach", s->reach);
 }
 
@@ -91,14 +92,14 @@ static json_t *columns_json(const stic_report *r)
 {
   static const char *const names[] = {
 #define X(name, kind) #name, kind,
-      STIC_REPORT_COLUMNS(X)
+    STIC_REPORT_COLUMNS(X)
 #undef X
   };
   json_t *list = json_array();
 
   for (int i = 0; i < STIC_REPORT_COLUMN_COUNT; i++)
-    json_array_append_new(list, json_pack("[s, s, I]", names[2 * i], names[2 * i + 1],
-                                          (json_int_t)r->columns[i].size));
+    json_array_append_new(
+      list, json_pack("[s, s, I]", names[2 * i], names[2 * i + 1], (json_int_t)r->columns[i].size));
   return list;
 }
 
@@ -116,10 +117,10 @@ static json_t *timing_json(const stic_timing *timing)
 
     if (h->count > 0)
       json_array_append_new(
-          stages, json_pack("{s:s, s:I, s:I, s:I, s:I, s:I}", "name", names[i], "count", (json_int_t)h->count, "p50",
-                            (json_int_t)stic_histogram_quantile(h, 0.5), "p99",
-                            (json_int_t)stic_histogram_quantile(h, 0.99), "p999",
-                            (json_int_t)stic_histogram_quantile(h, 0.999), "max", (json_int_t)h->max_ns));
+        stages, json_pack("{s:s, s:I, s:I, s:I, s:I, s:I}", "name", names[i], "count", (json_int_t)h->count,
+                          "p50", (json_int_t)stic_histogram_quantile(h, 0.5), "p99",
+                          (json_int_t)stic_histogram_quantile(h, 0.99), "p999",
+                          (json_int_t)stic_histogram_quantile(h, 0.999), "max", (json_int_t)h->max_ns));
   }
   return json_pack("{s:i, s:I, s:o, s:o}", "target_hz", STIC_TARGET_HZ, "missed", (json_int_t)timing->missed,
                    "machine", text_json(stic_machine_text(machine, sizeof machine)), "stages", stages);
@@ -156,15 +157,15 @@ static json_t *run_json(const stic_report *r, const stic_report_video *video, co
 {
   const stic_report_settings *s = &r->settings;
 
-  return json_pack("{s:s, s:o, s:o, s:s, s:o, s:s, s:o, s:o, s:o, s:o, s:i, s:I, s:I, s:f, s:f, s:o, s:o, s:o, s:o}",
-                   "version", stic_version(), "command", text_json(s->command), "scene_path",
-                   text_json(s->scene_path), "scene_text", r->scene_text, "input", text_json(s->input), "input_kind",
-                   s->input_kind, "sha256", json_string(sha256), "solver", solver_json(s), "scene",
-                   scene_json(s->scene), "video", video_json(video), "fps", s->fps, "rows", (json_int_t)r->rows,
-                   "events", (json_int_t)r->events, "start", (double)r->first_ns / 1e9, "seconds",
-                   (double)(r->last_ns - r->first_ns) / 1e9, "timing", timing_json(timing), "columns",
-                   columns_json(r), "states", names_json(STIC_MULTI + 1, state_name), "kinds",
-                   names_json(STIC_EVENT_RELEASE + 1, event_name));
+  return json_pack(
+    "{s:s, s:o, s:o, s:s, s:o, s:s, s:o, s:o, s:o, s:o, s:i, s:I, s:I, s:f, s:f, s:o, s:o, s:o, s:o}",
+    "version", stic_version(), "command", text_json(s->command), "scene_path", text_json(s->scene_path),
+    "scene_text", r->scene_text, "input", text_json(s->input), "input_kind", s->input_kind, "sha256",
+    json_string(sha256), "solver", solver_json(s), "scene", scene_json(s->scene), "video", video_json(video),
+    "fps", s->fps, "rows", (json_int_t)r->rows, "events", (json_int_t)r->events, "start",
+    (double)r->first_ns / 1e9, "seconds", (double)(r->last_ns - r->first_ns) / 1e9, "timing",
+    timing_json(timing), "columns", columns_json(r), "states", names_json(STIC_MULTI + 1, state_name),
+    "kinds", names_json(STIC_EVENT_RELEASE + 1, event_name));
 }
 
 /* "<" could end the script element that holds the text; it only occurs inside of strings. */

@@ -93,8 +93,8 @@ static void hash_row(uint64_t *hash, const stic_result *result)
     *hash = (*hash ^ (unsigned char)row[i]) * HASH_STEP;
 }
 
-static stic_status measure(const stic_scene *scene, stic_level level, int64_t samples,
-                           measurement *m, stic_error *err)
+static stic_status measure(const stic_scene *scene, stic_level level, int64_t samples, measurement *m,
+                           stic_error *err)
 {
   stic_settings settings;
   stic_result result;
@@ -163,8 +163,7 @@ static stic_status bench_levels(bool quick, measurement *m, stic_error *err)
 }
 
 /* Further surfaces under the floor: nearly in reach, or far out of it. */
-static stic_status bench_surfaces(bool quick, double depth, const char *name, measurement *m,
-                                  stic_error *err)
+static stic_status bench_surfaces(bool quick, double depth, const char *name, measurement *m, stic_error *err)
 {
   static const int counts[] = {1, 2, 4, 16, 64, 256};
   double at_two = 0, median = 0;
@@ -218,14 +217,13 @@ typedef struct workplace {
   char scene[96], trace[96], short_trace[96], log[96];
 } workplace;
 
-static const char scene_text[] =
-  "stiction: 1\n"
-  "object: {size: [0.16, 0.08, 0.1], pose: {x: 0.3, y: 0.3}}\n"
-  "hand: {stiffness: 200, rotational_stiffness: 0.5}\n"
-  "friction: {static: 0.5, dynamic: 0.3}\n"
-  "surfaces:\n"
-  "  - {name: floor, point: [0, 0], normal_deg: 90}\n"
-  "  - {name: wall, point: [0, 0], normal_deg: 0}\n";
+static const char scene_text[] = "stiction: 1\n"
+                                 "object: {size: [0.16, 0.08, 0.1], pose: {x: 0.3, y: 0.3}}\n"
+                                 "hand: {stiffness: 200, rotational_stiffness: 0.5}\n"
+                                 "friction: {static: 0.5, dynamic: 0.3}\n"
+                                 "surfaces:\n"
+                                 "  - {name: floor, point: [0, 0], normal_deg: 90}\n"
+                                 "  - {name: wall, point: [0, 0], normal_deg: 0}\n";
 
 static stic_status write_scene(const char *path, stic_error *err)
 {
@@ -287,8 +285,13 @@ static stic_status set_up(workplace *w, int64_t samples, stic_error *err)
 /* Runs this program as a child: the time in ns, or -1. */
 static int64_t time_replay(const char *scene, const char *trace, const char *level, const char *log)
 {
-  char *argv[10] = {"stiction", "replay", (char *)(uintptr_t)scene, (char *)(uintptr_t)trace,
-                    "--accuracy", (char *)(uintptr_t)level, NULL};
+  char *argv[10] = {"stiction",
+                    "replay",
+                    (char *)(uintptr_t)scene,
+                    (char *)(uintptr_t)trace,
+                    "--accuracy",
+                    (char *)(uintptr_t)level,
+                    NULL};
   const int64_t start = stic_clock_ns();
   pid_t child;
   int status;
@@ -324,8 +327,8 @@ static stic_status bench_program(bool quick, stic_error *err)
   const int starts = quick ? 3 : 41;
   stic_histogram *start_up = calloc(1, sizeof *start_up);
   workplace w;
-  stic_status status = start_up ? set_up(&w, samples, err)
-                                : stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
+  stic_status status =
+    start_up ? set_up(&w, samples, err) : stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
   bool good = true;
 
   if (status != STIC_OK) {

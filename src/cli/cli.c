@@ -89,15 +89,13 @@ static int take_arguments(const stic_cli_usage *usage, stic_cli_args *args, cons
   return -1;
 }
 
-int stic_cli_parse(const stic_cli_usage *usage, const struct poptOption *options, int argc,
-                   const char **argv, stic_cli_args *args)
+int stic_cli_parse(const stic_cli_usage *usage, const struct poptOption *options, int argc, const char **argv,
+                   stic_cli_args *args)
 {
   int help = 0, result;
-  struct poptOption table[] = {
-    {NULL, '\0', POPT_ARG_INCLUDE_TABLE, NULL, 0, NULL, NULL},
-    {"help", 'h', POPT_ARG_NONE, &help, 0, "Show this and end", NULL},
-    POPT_TABLEEND
-  };
+  struct poptOption table[] = {{NULL, '\0', POPT_ARG_INCLUDE_TABLE, NULL, 0, NULL, NULL},
+                               {"help", 'h', POPT_ARG_NONE, &help, 0, "Show this and end", NULL},
+                               POPT_TABLEEND};
   const char *const own_name = argv[0];
   char name[64], positions[128];
 
@@ -166,25 +164,25 @@ static bool is_same_file(const char *a, const char *b)
     return strcmp(a, b) == 0;
   if (strcmp(a, b) == 0)
     return stat(a, &of_a) != 0 || S_ISREG(of_a.st_mode);
-  return stat(a, &of_a) == 0 && stat(b, &of_b) == 0 && S_ISREG(of_a.st_mode) &&
-         of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
+  return stat(a, &of_a) == 0 && stat(b, &of_b) == 0 && S_ISREG(of_a.st_mode) && of_a.st_dev == of_b.st_dev &&
+         of_a.st_ino == of_b.st_ino;
 }
 
-stic_status stic_cli_check_paths(const char *const *inputs, int input_count,
-                                 const char *const *outputs, int output_count, stic_error *err)
+stic_status stic_cli_check_paths(const char *const *inputs, int input_count, const char *const *outputs,
+                                 int output_count, stic_error *err)
 {
   for (int i = 0; i < output_count; i++) {
     if (!outputs[i])
       continue;
     for (int j = 0; j < i; j++) {
       if (outputs[j] && is_same_file(outputs[i], outputs[j]))
-        return stic_error_set(err, STIC_USAGE, NULL, 0, "two outputs go to '%.200s'; expected different files",
-                              outputs[i]);
+        return stic_error_set(err, STIC_USAGE, NULL, 0,
+                              "two outputs go to '%.200s'; expected different files", outputs[i]);
     }
     for (int j = 0; j < input_count; j++) {
       if (inputs[j] && strcmp(outputs[i], "-") != 0 && is_same_file(outputs[i], inputs[j]))
-        return stic_error_set(err, STIC_USAGE, NULL, 0, "the output '%.200s' is an input; expected another file",
-                              outputs[i]);
+        return stic_error_set(err, STIC_USAGE, NULL, 0,
+                              "the output '%.200s' is an input; expected another file", outputs[i]);
     }
   }
   return STIC_OK;

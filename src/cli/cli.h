@@ -42,16 +42,16 @@ typedef struct stic_cli_args {
 
 /* What a command says of itself. */
 typedef struct stic_cli_usage {
-  const char *command;    /* "replay" */
-  const char *positions;  /* "SCENE TRACE" */
-  const char *about;      /* what it does; ends with a line end */
+  const char *command;   /* "replay" */
+  const char *positions; /* "SCENE TRACE" */
+  const char *about;     /* what it does; ends with a line end */
   int positions_min, positions_max;
 } stic_cli_usage;
 
 /* Parses all arguments into the variables that `options` points at and the positions. Returns -1 to
  * go on, or the exit code: 0 after --help, STIC_USAGE after a message. Free in either case. */
-int stic_cli_parse(const stic_cli_usage *usage, const struct poptOption *options, int argc,
-                   const char **argv, stic_cli_args *args);
+int stic_cli_parse(const stic_cli_usage *usage, const struct poptOption *options, int argc, const char **argv,
+                   stic_cli_args *args);
 void stic_cli_args_free(stic_cli_args *args);
 
 /* Values of --set as overrides; splits `set` (NULL-ended, may be NULL) in place. The caller frees
@@ -61,8 +61,8 @@ stic_status stic_cli_overrides(char **set, stic_override **overrides, int *count
 void stic_cli_free_list(char **list);
 
 /* Refuses outputs (NULL where not asked for) that are one file, or one of the inputs. */
-stic_status stic_cli_check_paths(const char *const *inputs, int input_count,
-                                 const char *const *outputs, int output_count, stic_error *err);
+stic_status stic_cli_check_paths(const char *const *inputs, int input_count, const char *const *outputs,
+                                 int output_count, stic_error *err);
 
 /* ---- signals ----------------------------------------------------------------------------- */
 

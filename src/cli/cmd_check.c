@@ -57,7 +57,8 @@ static void check_trace(const char *path, const stic_scene *scene, findings *f)
   if (status == STIC_TRACE_BAD) {
     on_finding(f, false, &err);
   } else if (samples > 0 && scene && scene->hold == STIC_HOLD_BUTTON && !gripped) {
-    stic_error_set(&err, STIC_OK, path, 0, "the grip button is never pressed, and the scene has hold: button");
+    stic_error_set(&err, STIC_OK, path, 0,
+                   "the grip button is never pressed, and the scene has hold: button");
     on_finding(f, true, &err);
   }
   stic_trace_close(reader);
@@ -79,8 +80,8 @@ static int check_files(const stic_cli_args *args, char **set)
     free(scene);
     return stic_cli_fail(&err);
   }
-  scene_good = stic_scene_read_all(args->positions[0], overrides, override_count, scene, on_finding,
-                                   &f) == STIC_OK;
+  scene_good =
+    stic_scene_read_all(args->positions[0], overrides, override_count, scene, on_finding, &f) == STIC_OK;
   if (args->position_count > 1)
     check_trace(args->positions[1], scene_good ? scene : NULL, &f);
   free(overrides);
@@ -101,8 +102,7 @@ int stic_cmd_check(int argc, const char **argv)
   char **set = NULL;
   const struct poptOption table[] = {
     {"set", '\0', POPT_ARG_ARGV, &set, 0, "Override a value of the scene; repeatable", "KEY=VALUE"},
-    POPT_TABLEEND
-  };
+    POPT_TABLEEND};
   stic_cli_args args;
   int code = stic_cli_parse(&usage, table, argc, argv, &args);
 

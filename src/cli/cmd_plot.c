@@ -44,8 +44,8 @@ static stic_status parse_figure(plot_run *r, stic_error *err)
   int64_t number = 0;
 
   r->chosen = text && strcmp(text, "all") != 0;
-  if (r->chosen && stic_number_parse_integer(text, strlen(text), STIC_FIGURE_FIRST, STIC_FIGURE_LAST, &number) !=
-                     STIC_NUMBER_OK)
+  if (r->chosen && stic_number_parse_integer(text, strlen(text), STIC_FIGURE_FIRST, STIC_FIGURE_LAST,
+                                             &number) != STIC_NUMBER_OK)
     return stic_error_set(err, STIC_USAGE, NULL, 0, "--figure %.40s: expected 9, 10, 11, 12 or all", text);
   if (r->chosen)
     r->figures[number] = true;
@@ -70,8 +70,8 @@ static stic_status parse_stretch(plot_run *r, stic_error *err)
   if (status == STIC_OK)
     status = parse_seconds("to", o->to, &r->settings.to, err);
   if (status == STIC_OK && (o->from || o->to) && r->settings.from > r->settings.to)
-    status = stic_error_set(err, STIC_USAGE, NULL, 0, "--from %.40s --to %.40s: expected an earlier time first",
-                            o->from, o->to);
+    status = stic_error_set(err, STIC_USAGE, NULL, 0,
+                            "--from %.40s --to %.40s: expected an earlier time first", o->from, o->to);
   return status;
 }
 
@@ -86,7 +86,8 @@ static void choose_figures(plot_run *r)
     r->figures[9] = r->figures[10] = true;
   for (int i = STIC_FIGURE_FIRST; i <= STIC_FIGURE_LAST; i++) {
     if (r->figures[i] && !stic_plot_has_state(r->plot, i) && r->settings.from > r->settings.to)
-      stic_cli_say("the log has no %s contact: figure %d shows all of it", i <= 10 ? "single-vertex" : "two-vertex", i);
+      stic_cli_say("the log has no %s contact: figure %d shows all of it",
+                   i <= 10 ? "single-vertex" : "two-vertex", i);
   }
 }
 
@@ -128,7 +129,9 @@ static stic_status find_friction(plot_run *r, stic_error *err)
   if (status == STIC_OK && (r->options->scene || (*named && read_named_scene(r, scene))))
     stic_plot_set_scene(r->plot, scene);
   else if (status == STIC_OK)
-    stic_cli_say("friction limits are left out, and the object is shown by its origin: the scene '%s' that the log names cannot be read; --scene SCENE gives them", named);
+    stic_cli_say(
+      "friction limits are left out, and the object is shown by its origin: the scene '%s' that the log names cannot be read; --scene SCENE gives them",
+      named);
   free(scene);
   return status;
 }
@@ -158,8 +161,8 @@ static int draw_one(plot_run *r, stic_error *err)
       figure = i;
   }
   if (figure == 0) {
-    stic_error_set(err, STIC_USAGE, NULL, 0, "--out %.200s is one picture; expected --figure 9, 10, 11 or 12 with it",
-                   r->options->out);
+    stic_error_set(err, STIC_USAGE, NULL, 0,
+                   "--out %.200s is one picture; expected --figure 9, 10, 11 or 12 with it", r->options->out);
     return stic_cli_fail(err);
   }
   return draw(r, figure, r->options->out, err);
@@ -196,8 +199,8 @@ static int plot_log(plot_run *r, const char *log, stic_error *err)
     return stic_cli_fail(err);
   }
   if (parse_figure(r, err) != STIC_OK || parse_stretch(r, err) != STIC_OK ||
-      stic_cli_check_paths(&log, 1, &out, 1, err) != STIC_OK || stic_plot_read(log, &r->plot, err) != STIC_OK ||
-      find_friction(r, err) != STIC_OK)
+      stic_cli_check_paths(&log, 1, &out, 1, err) != STIC_OK ||
+      stic_plot_read(log, &r->plot, err) != STIC_OK || find_friction(r, err) != STIC_OK)
     return stic_cli_fail(err);
   if (stic_plot_is_cut(r->plot))
     stic_cli_say("rows with more than four contacts show the forces of the four that the log lists");
@@ -209,15 +212,17 @@ int stic_cmd_plot(int argc, const char **argv)
 {
   plot_options o = {NULL, NULL, NULL, NULL, NULL, NULL, 0};
   const struct poptOption table[] = {
-    {"out", 'o', POPT_ARG_STRING, &o.out, 0, "A picture, or a folder for all of them (default: plots)", "FILE|DIR"},
-    {"figure", '\0', POPT_ARG_STRING, &o.figure, 0, "9, 10, 11, 12 or all (default): those that the log has contact for", "N"},
-    {"format", '\0', POPT_ARG_STRING, &o.format, 0, "svg, pdf or png, for a folder (default: all three)", "NAME"},
+    {"out", 'o', POPT_ARG_STRING, &o.out, 0, "A picture, or a folder for all of them (default: plots)",
+     "FILE|DIR"},
+    {"figure", '\0', POPT_ARG_STRING, &o.figure, 0,
+     "9, 10, 11, 12 or all (default): those that the log has contact for", "N"},
+    {"format", '\0', POPT_ARG_STRING, &o.format, 0, "svg, pdf or png, for a folder (default: all three)",
+     "NAME"},
     {"scene", '\0', POPT_ARG_STRING, &o.scene, 0, "Scene with the friction of the run", "SCENE"},
     {"from", '\0', POPT_ARG_STRING, &o.from, 0, "Show the log from this time on", "SECONDS"},
     {"to", '\0', POPT_ARG_STRING, &o.to, 0, "Show the log up to this time", "SECONDS"},
     {"keep", '\0', POPT_ARG_NONE, &o.keep, 0, "Leave gnuplot's script and data beside the pictures", NULL},
-    POPT_TABLEEND
-  };
+    POPT_TABLEEND};
   plot_run r = {.options = &o};
   stic_cli_args args;
   stic_error err;

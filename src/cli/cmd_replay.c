@@ -28,8 +28,8 @@ typedef struct replay_options {
 typedef struct replay {
   stic_session session;
   stic_trace_reader *trace;
-  stic_movie *movie;        /* NULL: none asked for, or it failed */
-  stic_error movie_error;   /* why it failed; the rest of the run goes on without pictures */
+  stic_movie *movie;      /* NULL: none asked for, or it failed */
+  stic_error movie_error; /* why it failed; the rest of the run goes on without pictures */
   stic_review review;
   bool hud_timing;
   stic_error first_skipped; /* with --lenient */
@@ -115,14 +115,10 @@ static int replay_all(replay *r, stic_error *err)
     int code;
 
     switch (stic_trace_next(r->trace, &sample, err)) {
-    case STIC_TRACE_END:
-      return -1;
-    case STIC_TRACE_BAD:
-      return stic_cli_fail(err);
-    case STIC_TRACE_WAIT:
-      continue;
-    case STIC_TRACE_SAMPLE:
-      break;
+    case STIC_TRACE_END: return -1;
+    case STIC_TRACE_BAD: return stic_cli_fail(err);
+    case STIC_TRACE_WAIT: continue;
+    case STIC_TRACE_SAMPLE: break;
     }
     code = one_sample(r, &sample, r->session.timing ? stic_clock_ns() - start : 0, err);
     if (code >= 0)
@@ -154,7 +150,8 @@ static stic_status open_movie(replay *r, const replay_options *o, const char *tr
   if (status == STIC_OK && o->hud_timing)
     status = stic_session_time(&r->session, err);
   if (status == STIC_OK)
-    status = stic_pictures_measure(&r->session.scene, &r->session.settings, trace, o->lenient != 0, &extent, err);
+    status =
+      stic_pictures_measure(&r->session.scene, &r->session.settings, trace, o->lenient != 0, &extent, err);
   if (status == STIC_OK && strcmp(trace, "-") == 0)
     settings.render.extent = NULL;
   r->hud_timing = o->hud_timing != 0;
@@ -189,15 +186,15 @@ int stic_cmd_replay(int argc, const char **argv)
     STIC_SESSION_OPTIONS(&session),
     {"lenient", '\0', POPT_ARG_NONE, &o.lenient, 0, "Pass over bad lines of the trace and count them", NULL},
     {"frames", '\0', POPT_ARG_STRING, &o.folder, 0, "Write pictures DIR/frame_000000.png ...", "DIR"},
-    {"video", '\0', POPT_ARG_STRING, &o.video, 0, "Write a video: .mp4 (H.264), .mkv (lossless) or .webm (VP9)",
-     "FILE"},
-    {"report", '\0', POPT_ARG_STRING, &o.report, 0, "Write a page to review the run in a browser (HTML, one file)", "FILE"},
+    {"video", '\0', POPT_ARG_STRING, &o.video, 0,
+     "Write a video: .mp4 (H.264), .mkv (lossless) or .webm (VP9)", "FILE"},
+    {"report", '\0', POPT_ARG_STRING, &o.report, 0,
+     "Write a page to review the run in a browser (HTML, one file)", "FILE"},
     {"fps", '\0', POPT_ARG_INT, &o.fps, 0, "Pictures per second of the trace, 1 to 1000 (default 31)", "N"},
     {"force", '\0', POPT_ARG_NONE, &o.force, 0, "Remove older pictures from DIR", NULL},
     STIC_PICTURE_OPTIONS(&o.pictures),
     {"hud-timing", '\0', POPT_ARG_NONE, &o.hud_timing, 0, "Show in the pictures what each frame cost", NULL},
-    POPT_TABLEEND
-  };
+    POPT_TABLEEND};
   replay r = {.trace = NULL};
   stic_cli_args args;
   stic_error err;
@@ -210,7 +207,8 @@ int stic_cmd_replay(int argc, const char **argv)
 
     code = -1;
     if (stic_cli_check_paths(args.positions, 2, outputs, 5, &err) != STIC_OK ||
-        stic_session_open(&r.session, &session, args.positions[0], "trace", args.positions[1], &err) != STIC_OK ||
+        stic_session_open(&r.session, &session, args.positions[0], "trace", args.positions[1], &err) !=
+          STIC_OK ||
         stic_trace_open(args.positions[1], &trace_options, &r.trace, &err) != STIC_OK ||
         stic_review_open(&r.review, o.report, &r.session, &source, &err) != STIC_OK ||
         start_movie(&r, &o, &session, args.positions[1], &err) != STIC_OK)

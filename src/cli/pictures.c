@@ -22,8 +22,7 @@ static bool parse_size(const char *text, int *width, int *height)
   const char *x = strchr(text, 'x');
   int64_t w, h;
 
-  if (!x ||
-      stic_number_parse_integer(text, (size_t)(x - text), 1, INT16_MAX, &w) != STIC_NUMBER_OK ||
+  if (!x || stic_number_parse_integer(text, (size_t)(x - text), 1, INT16_MAX, &w) != STIC_NUMBER_OK ||
       stic_number_parse_integer(x + 1, strlen(x + 1), 1, INT16_MAX, &h) != STIC_NUMBER_OK)
     return false;
   *width = (int)w;

@@ -11,18 +11,21 @@ typedef struct stic_picture_options {
 } stic_picture_options;
 
 /* Rows of a popt table for the options above. */
-#define STIC_PICTURE_OPTIONS(o) \
-  {"size", '\0', POPT_ARG_STRING, &(o)->size, 0, "Size of pictures in pixels (default 1280x720)", "WxH"}, \
-  {"camera", '\0', POPT_ARG_STRING, &(o)->camera, 0, "three-quarter (default), front or follow", "NAME"}, \
-  {"theme", '\0', POPT_ARG_STRING, &(o)->theme, 0, "light (default) or dark", "NAME"}, \
-  {"quality", '\0', POPT_ARG_STRING, &(o)->quality, 0, "fast, good (default) or best", "NAME"}, \
-  {"plot-of", '\0', POPT_ARG_STRING, &(o)->plot, 0, \
-   "What the plot over time shows: auto (default), x, y or angle", "NAME"}
+#define STIC_PICTURE_OPTIONS(o)                                                                              \
+  {"size", '\0', POPT_ARG_STRING, &(o)->size, 0, "Size of pictures in pixels (default 1280x720)", "WxH"},    \
+    {"camera", '\0', POPT_ARG_STRING, &(o)->camera, 0, "three-quarter (default), front or follow", "NAME"},  \
+    {"theme", '\0', POPT_ARG_STRING, &(o)->theme, 0, "light (default) or dark", "NAME"},                     \
+    {"quality", '\0', POPT_ARG_STRING, &(o)->quality, 0, "fast, good (default) or best", "NAME"},            \
+  {                                                                                                          \
+    "plot-of", '\0', POPT_ARG_STRING, &(o)->plot, 0,                                                         \
+      "What the plot over time shows: auto (default), x, y or angle", "NAME"                                 \
+  }
 
 void stic_picture_options_free(stic_picture_options *options);
 
 /* Puts the values into `settings`; STIC_USAGE for what they cannot be. */
-stic_status stic_pictures_apply(const stic_picture_options *options, stic_render_settings *settings, stic_error *err);
+stic_status stic_pictures_apply(const stic_picture_options *options, stic_render_settings *settings,
+                                stic_error *err);
 
 /* Solves the trace once without writing anything, so that pictures can have a frame and scales that fit all of
  * it. Bad lines are left for the run itself to tell: what was read up to there counts. Not for standard input,

@@ -74,8 +74,8 @@ static void choose_video(stic_review *v, const char *asked)
     strcpy(v->why, "a page that goes into no file has no place to make one");
 }
 
-stic_status stic_review_open(stic_review *v, const char *path, const stic_session *s, const stic_review_source *source,
-                             stic_error *err)
+stic_status stic_review_open(stic_review *v, const char *path, const stic_session *s,
+                             const stic_review_source *source, stic_error *err)
 {
   stic_report_settings settings;
   stic_status status;
@@ -87,10 +87,16 @@ stic_status stic_review_open(stic_review *v, const char *path, const stic_sessio
   v->command = command_text(source->argc, source->argv);
   if (!v->command)
     return stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
-  settings = (stic_report_settings){.path = path, .scene = &s->scene, .solver = &s->settings,
-                                    .scene_path = source->scene, .input_kind = "trace", .input = source->trace,
-                                    .command = v->command, .overrides = s->overrides,
-                                    .override_count = s->override_count, .fps = source->fps};
+  settings = (stic_report_settings){.path = path,
+                                    .scene = &s->scene,
+                                    .solver = &s->settings,
+                                    .scene_path = source->scene,
+                                    .input_kind = "trace",
+                                    .input = source->trace,
+                                    .command = v->command,
+                                    .overrides = s->overrides,
+                                    .override_count = s->override_count,
+                                    .fps = source->fps};
   status = stic_report_open(&settings, &v->report, err);
   if (status == STIC_OK)
     choose_video(v, source->video);

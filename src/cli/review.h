@@ -8,9 +8,9 @@
 /* All zero is a replay without a page; every function then does nothing. */
 typedef struct stic_review {
   stic_report *report;
-  char *command;      /* the command line, as a shell takes it */
-  const char *video;  /* what the page shows; NULL: no video */
-  char why[600];      /* ... and why */
+  char *command;     /* the command line, as a shell takes it */
+  const char *video; /* what the page shows; NULL: no video */
+  char why[600];     /* ... and why */
 } stic_review;
 
 /* What a page is about. */
@@ -19,7 +19,7 @@ typedef struct stic_review_source {
   int argc;                  /* the command's arguments, from its name on */
   const char *const *argv;
   int fps;
-  const char *video;         /* asked for beside the page; NULL: the page has its own */
+  const char *video; /* asked for beside the page; NULL: the page has its own */
 } stic_review_source;
 
 /* Prepares a page for `path` (NULL: none). Refuses what cannot be written. */

@@ -131,8 +131,7 @@ int64_t stic_session_step(stic_session *s, const stic_sample *sample, int64_t re
 
 bool stic_session_write_failed(const stic_session *s)
 {
-  return (s->log && stic_outfile_error(s->log) != 0) ||
-         (s->events && stic_outfile_error(s->events) != 0);
+  return (s->log && stic_outfile_error(s->log) != 0) || (s->events && stic_outfile_error(s->events) != 0);
 }
 
 static stic_status commit(stic_outfile **out, bool *pipe_closed, stic_error *err)
@@ -147,8 +146,7 @@ static stic_status commit(stic_outfile **out, bool *pipe_closed, stic_error *err
   return stic_outfile_commit(o, err);
 }
 
-stic_status stic_session_commit(stic_session *s, const char *scheduling, bool *pipe_closed,
-                                stic_error *err)
+stic_status stic_session_commit(stic_session *s, const char *scheduling, bool *pipe_closed, stic_error *err)
 {
   const double seconds = (double)(stic_clock_ns() - s->started_ns) / 1e9;
   stic_status status = STIC_OK;

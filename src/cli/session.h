@@ -17,19 +17,28 @@ typedef struct stic_session_options {
 void stic_session_options_free(stic_session_options *options);
 
 /* Rows of a popt table for the options above. */
-#define STIC_SESSION_OPTIONS(o) \
-  {"log", '\0', POPT_ARG_STRING, &(o)->log, 0, "Write a row per sample as CSV ('-': standard output)", "FILE"}, \
-  {"events", '\0', POPT_ARG_STRING, &(o)->events, 0, "Write touches, slips, snaps, grips as CSV", "FILE"}, \
-  {"timing", '\0', POPT_ARG_STRING, &(o)->timing, 0, "Write where the time went as JSON", "FILE"}, \
-  STIC_SOLVER_OPTIONS(o)
+#define STIC_SESSION_OPTIONS(o)                                                                              \
+  {"log", '\0', POPT_ARG_STRING, &(o)->log, 0, "Write a row per sample as CSV ('-': standard output)",       \
+   "FILE"},                                                                                                  \
+    {"events", '\0', POPT_ARG_STRING, &(o)->events, 0, "Write touches, slips, snaps, grips as CSV", "FILE"}, \
+    {"timing", '\0', POPT_ARG_STRING, &(o)->timing, 0, "Write where the time went as JSON", "FILE"},         \
+    STIC_SOLVER_OPTIONS(o)
 
 /* The part of them that any command which solves has. */
-#define STIC_SOLVER_OPTIONS(o) \
-  {"accuracy", '\0', POPT_ARG_STRING, &(o)->accuracy, 0, \
-   "How the hand's path between samples is followed: frame, substep=N or event (default)", "LEVEL"}, \
-  {"precision", '\0', POPT_ARG_STRING, &(o)->precision, 0, "Arithmetic: f32, f64 (default) or f80", "P"}, \
-  {"set", '\0', POPT_ARG_ARGV, &(o)->set, 0, \
-   "Override a value of the scene, e.g. friction.static=0.6 or surfaces.floor.point=[0, 0.1]; repeatable", "KEY=VALUE"}
+#define STIC_SOLVER_OPTIONS(o)                                                                                \
+  {"accuracy",                                                                                                \
+   '\0',                                                                                                      \
+   POPT_ARG_STRING,                                                                                           \
+   &(o)->accuracy,                                                                                            \
+   0,                                                                                                         \
+   "How the hand's path between samples is followed: frame, substep=N or event (default)",                    \
+   "LEVEL"},                                                                                                  \
+    {"precision", '\0', POPT_ARG_STRING, &(o)->precision, 0, "Arithmetic: f32, f64 (default) or f80", "P"},   \
+  {                                                                                                           \
+    "set", '\0', POPT_ARG_ARGV, &(o)->set, 0,                                                                 \
+      "Override a value of the scene, e.g. friction.static=0.6 or surfaces.floor.point=[0, 0.1]; repeatable", \
+      "KEY=VALUE"                                                                                             \
+  }
 
 typedef struct stic_session {
   stic_scene scene;
@@ -41,7 +50,7 @@ typedef struct stic_session {
   stic_timing *timing;        /* NULL: not asked for */
   const char *timing_path;
   int64_t started_ns;
-  stic_result result;         /* of the last step */
+  stic_result result; /* of the last step */
   int64_t rows;
 } stic_session;
 

@@ -14,7 +14,7 @@
 
 struct stic_line_reader {
   int fd;
-  bool owned;    /* fd is ours to close */
+  bool owned; /* fd is ours to close */
   bool at_end;
   bool skipping; /* inside a line that is too long */
   int64_t number;
@@ -40,8 +40,8 @@ stic_status stic_line_reader_open(const char *path, stic_line_reader **reader, s
   r->at_end = r->skipping = false;
   r->number = 0;
   r->start = r->searched = r->end = 0;
-  stic_error_quote(standard_input ? "standard input" : path,
-                   strlen(standard_input ? "standard input" : path), r->name, sizeof r->name);
+  stic_error_quote(standard_input ? "standard input" : path, strlen(standard_input ? "standard input" : path),
+                   r->name, sizeof r->name);
   *reader = r;
   return STIC_OK;
 }
@@ -64,8 +64,7 @@ static bool find_end(const stic_line_reader *r, size_t *at)
   return found != NULL;
 }
 
-static stic_line_status take_line(stic_line_reader *r, size_t line_end, const char **text,
-                                  size_t *length)
+static stic_line_status take_line(stic_line_reader *r, size_t line_end, const char **text, size_t *length)
 {
   size_t from = r->start, to = line_end;
   const bool too_long = r->skipping || to - from > STIC_LINE_MAX + 1;

@@ -11,8 +11,8 @@ typedef enum stic_line_status {
   STIC_LINE_TOO_LONG,   /* a line above the limit, passed over */
   STIC_LINE_UNFINISHED, /* the last line, without its end; then STIC_LINE_END */
   STIC_LINE_END,
-  STIC_LINE_WAIT,       /* interrupted by a signal, or nothing there on a non-blocking file; ask again */
-  STIC_LINE_FAILED      /* errno says why */
+  STIC_LINE_WAIT,  /* interrupted by a signal, or nothing there on a non-blocking file; ask again */
+  STIC_LINE_FAILED /* errno says why */
 } stic_line_status;
 
 typedef struct stic_line_reader stic_line_reader;

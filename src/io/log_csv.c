@@ -22,8 +22,7 @@ static void provenance_line(stic_outfile *out, const char *key, const char *valu
 {
   char text[1024];
 
-  stic_outfile_print(out, "# %s: %s\n", key,
-                     stic_error_quote(value, strlen(value), text, sizeof text));
+  stic_outfile_print(out, "# %s: %s\n", key, stic_error_quote(value, strlen(value), text, sizeof text));
 }
 
 void stic_log_begin(stic_outfile *out, const stic_log_provenance *p)
@@ -69,7 +68,7 @@ static char *put_contact(char *at, const stic_contact *c)
 
 size_t stic_log_row_text(const stic_result *r, char *text)
 {
-  const double numbers[] = {r->x,      r->y,      r->z,          r->theta,   r->hand_x, r->hand_y,
+  const double numbers[] = {r->x,      r->y,          r->z,       r->theta,   r->hand_x, r->hand_y,
                             r->hand_z, r->hand_theta, r->force_x, r->force_y, r->moment};
   const char *state = stic_state_name(r->state);
   const size_t state_length = strlen(state);
@@ -121,8 +120,8 @@ struct stic_log_reader {
   provenance_entry provenance[PROVENANCE_MAX];
 };
 
-#define BAD(r, err, ...) \
-  stic_error_set(err, STIC_BAD_INPUT, stic_line_reader_name((r)->lines), \
+#define BAD(r, err, ...)                                                                                     \
+  stic_error_set(err, STIC_BAD_INPUT, stic_line_reader_name((r)->lines),                                     \
                  stic_line_reader_number((r)->lines), __VA_ARGS__)
 
 /* The next whole line; `*more` false at the end. */
@@ -138,14 +137,11 @@ static stic_status next_line(stic_log_reader *r, const char **text, size_t *leng
   switch (status) {
   case STIC_LINE_READ:
   case STIC_LINE_END:
-  case STIC_LINE_WAIT:
-    return STIC_OK;
+  case STIC_LINE_WAIT: return STIC_OK;
   case STIC_LINE_TOO_LONG:
     return BAD(r, err, "the line is longer than %d bytes; expected a row of a log", STIC_LINE_MAX);
-  case STIC_LINE_UNFINISHED:
-    return BAD(r, err, "the last line has no end; expected a complete log");
-  case STIC_LINE_FAILED:
-    break;
+  case STIC_LINE_UNFINISHED: return BAD(r, err, "the last line has no end; expected a complete log");
+  case STIC_LINE_FAILED: break;
   }
   return stic_error_set(err, STIC_BAD_INPUT, stic_line_reader_name(r->lines), 0, "cannot read: %s",
                         strerror(errno));
@@ -265,8 +261,7 @@ static int64_t take_integer(row_reader *row, int64_t high)
 {
   int64_t value = 0;
 
-  if (stic_number_parse_integer(row->next->text, row->next->length, 0, high, &value) !=
-        STIC_NUMBER_OK &&
+  if (stic_number_parse_integer(row->next->text, row->next->length, 0, high, &value) != STIC_NUMBER_OK &&
       !row->bad)
     row->bad = row->column;
   row->next++;
@@ -355,7 +350,6 @@ stic_status stic_log_next(stic_log_reader *r, stic_result *result, bool *more, s
   take_row(&row, result);
   if (row.bad)
     return BAD(r, err, "column %d is '%s'; expected a value as in the column header", row.bad,
-               stic_error_quote(fields[row.bad - 1].text, fields[row.bad - 1].length, quoted,
-                                sizeof quoted));
+               stic_error_quote(fields[row.bad - 1].text, fields[row.bad - 1].length, quoted, sizeof quoted));
   return STIC_OK;
 }

@@ -7,21 +7,21 @@
 
 #define STIC_LOG_FORMAT "# stiction-log 1"
 #define STIC_LOG_CONTACTS 4 /* listed in a row */
-#define STIC_LOG_HEADER \
-  "t,state,x,y,z,theta,hand_x,hand_y,hand_z,hand_theta,force_x,force_y,moment,slips,flags," \
-  "iterations,residual,contacts," \
-  "c1_vertex,c1_surface,c1_x,c1_y,c1_normal,c1_friction," \
-  "c2_vertex,c2_surface,c2_x,c2_y,c2_normal,c2_friction," \
-  "c3_vertex,c3_surface,c3_x,c3_y,c3_normal,c3_friction," \
+#define STIC_LOG_HEADER                                                                                      \
+  "t,state,x,y,z,theta,hand_x,hand_y,hand_z,hand_theta,force_x,force_y,moment,slips,flags,"                  \
+  "iterations,residual,contacts,"                                                                            \
+  "c1_vertex,c1_surface,c1_x,c1_y,c1_normal,c1_friction,"                                                    \
+  "c2_vertex,c2_surface,c2_x,c2_y,c2_normal,c2_friction,"                                                    \
+  "c3_vertex,c3_surface,c3_x,c3_y,c3_normal,c3_friction,"                                                    \
   "c4_vertex,c4_surface,c4_x,c4_y,c4_normal,c4_friction"
 
 /* Where a log comes from: lines of "# key: value" under its first one. No clock values. */
 typedef struct stic_log_provenance {
-  const char *scene;               /* path of the scene file */
-  const char *input_kind;          /* "trace" or "device" */
-  const char *input;               /* its path or description */
+  const char *scene;      /* path of the scene file */
+  const char *input_kind; /* "trace" or "device" */
+  const char *input;      /* its path or description */
   const stic_settings *settings;
-  const stic_override *overrides;  /* may be NULL if override_count is 0 */
+  const stic_override *overrides; /* may be NULL if override_count is 0 */
   int override_count;
 } stic_log_provenance;
 

@@ -61,8 +61,8 @@ static int open_temporary(stic_outfile *out)
   if (!out->temporary)
     return ENOMEM;
   for (int i = 0; i < TEMPORARY_TRIES && problem == EEXIST; i++) {
-    snprintf(out->temporary, room, "%.*s.%.*s.%ld-%d.tmp", (int)(name - out->target), out->target,
-             NAME_KEPT, name, (long)getpid(), i);
+    snprintf(out->temporary, room, "%.*s.%.*s.%ld-%d.tmp", (int)(name - out->target), out->target, NAME_KEPT,
+             name, (long)getpid(), i);
     out->fd = open(out->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (out->fd >= 0)
       return 0;

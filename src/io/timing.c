@@ -157,9 +157,9 @@ static json_t *timing_json(const stic_timing *timing, double seconds, const char
   for (int i = 0; i <= STIC_STAGE_FRAME; i++)
     json_object_set_new(stages, names[i], stage_json(&timing->stages[i]));
   return json_pack("{s:I, s:f, s:i, s:I, s:o, s:o, s:s, s:s}", "frames",
-                   (json_int_t)timing->stages[STIC_STAGE_FRAME].count, "seconds", seconds,
-                   "target_hz", STIC_TARGET_HZ, "missed", (json_int_t)timing->missed, "stages", stages,
-                   "wakeup", stage_json(&timing->stages[STIC_STAGE_WAKEUP]), "machine",
+                   (json_int_t)timing->stages[STIC_STAGE_FRAME].count, "seconds", seconds, "target_hz",
+                   STIC_TARGET_HZ, "missed", (json_int_t)timing->missed, "stages", stages, "wakeup",
+                   stage_json(&timing->stages[STIC_STAGE_WAKEUP]), "machine",
                    stic_machine_text(machine, sizeof machine), "scheduling", scheduling);
 }
 

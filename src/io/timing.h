@@ -42,7 +42,7 @@ typedef enum stic_stage {
   STIC_STAGE_RENDER,
   STIC_STAGE_ENCODE,
   STIC_STAGE_WRITE,
-  STIC_STAGE_FRAME, /* one whole turn of the loop, without waiting */
+  STIC_STAGE_FRAME,  /* one whole turn of the loop, without waiting */
   STIC_STAGE_WAKEUP, /* how late the loop woke; no part of a frame */
   STIC_STAGE_COUNT
 } stic_stage;

@@ -19,8 +19,7 @@
 /* Far beyond any tracker, and still exact to 1e-9 m. */
 #define POSITION_MAX 1e18
 
-static const char *const column_names[COLUMNS] = {"t",  "x",  "y",  "z",      "qx",
-                                                  "qy", "qz", "qw", "buttons"};
+static const char *const column_names[COLUMNS] = {"t", "x", "y", "z", "qx", "qy", "qz", "qw", "buttons"};
 
 struct stic_trace_reader {
   stic_line_reader *lines;
@@ -30,8 +29,8 @@ struct stic_trace_reader {
   int64_t last_t_ns; /* of the last sample, if there is one */
 };
 
-stic_status stic_trace_open(const char *path, const stic_trace_options *options,
-                            stic_trace_reader **reader, stic_error *err)
+stic_status stic_trace_open(const char *path, const stic_trace_options *options, stic_trace_reader **reader,
+                            stic_error *err)
 {
   stic_trace_reader *r = calloc(1, sizeof *r);
   stic_status status;
@@ -58,32 +57,29 @@ void stic_trace_close(stic_trace_reader *reader)
   free(reader);
 }
 
-#define BAD(r, err, ...) \
-  stic_error_set(err, STIC_BAD_INPUT, stic_line_reader_name((r)->lines), \
+#define BAD(r, err, ...)                                                                                     \
+  stic_error_set(err, STIC_BAD_INPUT, stic_line_reader_name((r)->lines),                                     \
                  stic_line_reader_number((r)->lines), __VA_ARGS__)
 
-static bool read_double(const stic_trace_reader *r, const stic_field *field, int column,
-                        double *value, stic_error *err)
+static bool read_double(const stic_trace_reader *r, const stic_field *field, int column, double *value,
+                        stic_error *err)
 {
   char text[40];
 
   switch (stic_number_parse(field->text, field->length, value)) {
-  case STIC_NUMBER_OK:
-    return true;
+  case STIC_NUMBER_OK: return true;
   case STIC_NUMBER_TOO_LARGE:
     BAD(r, err, "%s is '%s'; expected a finite number", column_names[column],
         stic_error_quote(field->text, field->length, text, sizeof text));
     return false;
-  case STIC_NUMBER_NOT_PLAIN:
-    break;
+  case STIC_NUMBER_NOT_PLAIN: break;
   }
   BAD(r, err, "%s is '%s'; expected a plain number", column_names[column],
       stic_error_quote(field->text, field->length, text, sizeof text));
   return false;
 }
 
-static bool read_time(const stic_trace_reader *r, const stic_field *field, int64_t *t_ns,
-                      stic_error *err)
+static bool read_time(const stic_trace_reader *r, const stic_field *field, int64_t *t_ns, stic_error *err)
 {
   char text[40], last[40];
 
@@ -92,11 +88,8 @@ static bool read_time(const stic_trace_reader *r, const stic_field *field, int64
   case STIC_NUMBER_NOT_PLAIN:
     BAD(r, err, "t is '%s'; expected seconds as a plain number", text);
     return false;
-  case STIC_NUMBER_TOO_LARGE:
-    BAD(r, err, "t is '%s'; expected seconds within +-9.2e9", text);
-    return false;
-  case STIC_NUMBER_OK:
-    break;
+  case STIC_NUMBER_TOO_LARGE: BAD(r, err, "t is '%s'; expected seconds within +-9.2e9", text); return false;
+  case STIC_NUMBER_OK: break;
   }
   if (r->samples > 0 && *t_ns <= r->last_t_ns) {
     last[stic_format_seconds(r->last_t_ns, last)] = '\0';
@@ -133,8 +126,8 @@ static bool read_pose(const stic_trace_reader *r, const stic_field *fields, stic
   return true;
 }
 
-static bool read_sample(const stic_trace_reader *r, const char *text, size_t length,
-                        stic_sample *sample, stic_error *err)
+static bool read_sample(const stic_trace_reader *r, const char *text, size_t length, stic_sample *sample,
+                        stic_error *err)
 {
   stic_field fields[COLUMNS];
   const int count = stic_fields_split(text, length, fields, COLUMNS);
@@ -145,8 +138,7 @@ static bool read_sample(const stic_trace_reader *r, const char *text, size_t len
     if (length == 0)
       BAD(r, err, "the line is empty; expected %d fields: " STIC_TRACE_HEADER, COLUMNS);
     else
-      BAD(r, err, "found %d field%s; expected %d: " STIC_TRACE_HEADER, count, count == 1 ? "" : "s",
-          COLUMNS);
+      BAD(r, err, "found %d field%s; expected %d: " STIC_TRACE_HEADER, count, count == 1 ? "" : "s", COLUMNS);
     return false;
   }
   if (!read_time(r, &fields[0], &sample->t_ns, err) || !read_pose(r, fields, sample, err))
@@ -216,10 +208,8 @@ stic_trace_status stic_trace_next(stic_trace_reader *r, stic_sample *sample, sti
     const stic_line_status line = stic_line_reader_next(r->lines, &text, &length);
 
     switch (line) {
-    case STIC_LINE_END:
-      return end_of_trace(r, err);
-    case STIC_LINE_WAIT:
-      return STIC_TRACE_WAIT;
+    case STIC_LINE_END: return end_of_trace(r, err);
+    case STIC_LINE_WAIT: return STIC_TRACE_WAIT;
     case STIC_LINE_FAILED:
       stic_error_set(err, STIC_BAD_INPUT, stic_line_reader_name(r->lines), 0, "cannot read: %s",
                      strerror(errno));
@@ -244,8 +234,7 @@ stic_trace_status stic_trace_next(stic_trace_reader *r, stic_sample *sample, sti
       }
       break;
     case STIC_LINE_TOO_LONG:
-      BAD(r, &problem, "the line is longer than %d bytes; expected " STIC_TRACE_HEADER,
-          STIC_LINE_MAX);
+      BAD(r, &problem, "the line is longer than %d bytes; expected " STIC_TRACE_HEADER, STIC_LINE_MAX);
       break;
     }
     if (!r->options.lenient || !r->format_seen) {
@@ -308,8 +297,7 @@ size_t stic_trace_line(const stic_sample *sample, char *out)
 }
 
 /* One write() for a line, so that a reader sees whole lines only. */
-static stic_status write_whole(stic_trace_writer *w, const char *text, size_t length,
-                               stic_error *err)
+static stic_status write_whole(stic_trace_writer *w, const char *text, size_t length, stic_error *err)
 {
   while (length > 0) {
     const ssize_t n = write(w->fd, text, length);
@@ -337,8 +325,7 @@ stic_status stic_trace_create(const char *path, const char *comment, stic_trace_
   *writer = NULL;
   if (!w)
     return stic_error_set(err, STIC_NO_MEMORY, path, 0, "out of memory");
-  w->fd = standard_output ? STDOUT_FILENO
-                          : open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  w->fd = standard_output ? STDOUT_FILENO : open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   w->owned = !standard_output;
   stic_error_quote(path, strlen(path), w->path, sizeof w->path);
   if (w->fd < 0) {
@@ -346,8 +333,7 @@ stic_status stic_trace_create(const char *path, const char *comment, stic_trace_
     return stic_error_set(err, STIC_CANNOT_WRITE, path, 0, "cannot create the recording: %s",
                           strerror(errno));
   }
-  n = snprintf(head, sizeof head, STIC_TRACE_FORMAT "\n%s%s%s" STIC_TRACE_HEADER "\n",
-               comment ? "# " : "",
+  n = snprintf(head, sizeof head, STIC_TRACE_FORMAT "\n%s%s%s" STIC_TRACE_HEADER "\n", comment ? "# " : "",
                comment ? stic_error_quote(comment, strlen(comment), quoted, sizeof quoted) : "",
                comment ? "\n" : "");
   status = write_whole(w, head, (size_t)n, err);
@@ -374,11 +360,11 @@ stic_status stic_trace_finish(stic_trace_writer *writer, stic_error *err)
     return STIC_OK;
   /* Pipes and the like cannot be synced, which is no fault. */
   if (fsync(writer->fd) != 0 && errno != EINVAL && errno != EROFS && errno != ENOTSUP)
-    status = stic_error_set(err, STIC_CANNOT_WRITE, writer->path, 0,
-                            "cannot finish the recording: %s", strerror(errno));
+    status = stic_error_set(err, STIC_CANNOT_WRITE, writer->path, 0, "cannot finish the recording: %s",
+                            strerror(errno));
   if (writer->owned && close(writer->fd) != 0 && status == STIC_OK)
-    status = stic_error_set(err, STIC_CANNOT_WRITE, writer->path, 0,
-                            "cannot finish the recording: %s", strerror(errno));
+    status = stic_error_set(err, STIC_CANNOT_WRITE, writer->path, 0, "cannot finish the recording: %s",
+                            strerror(errno));
   free(writer);
   return status;
 }

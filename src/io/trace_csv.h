@@ -15,7 +15,7 @@
 typedef struct stic_trace_reader stic_trace_reader;
 
 typedef struct stic_trace_options {
-  bool lenient;      /* default false; true: bad lines are passed over and counted */
+  bool lenient; /* default false; true: bad lines are passed over and counted */
   /* Told about each line passed over (an error) and about a dropped last line (a warning); may be
    * NULL. */
   void (*report)(void *context, bool warning, const stic_error *problem);
@@ -25,14 +25,14 @@ typedef struct stic_trace_options {
 typedef enum stic_trace_status {
   STIC_TRACE_SAMPLE, /* `*sample` is set */
   STIC_TRACE_END,
-  STIC_TRACE_WAIT,   /* nothing yet: interrupted by a signal, or a slow pipe; ask again */
-  STIC_TRACE_BAD     /* `*err` is set; the reader can only be closed */
+  STIC_TRACE_WAIT, /* nothing yet: interrupted by a signal, or a slow pipe; ask again */
+  STIC_TRACE_BAD   /* `*err` is set; the reader can only be closed */
 } stic_trace_status;
 
 /* Opens a trace, "-" for standard input. `options` may be NULL. The caller owns `*reader`.
  * Errors: STIC_BAD_INPUT, STIC_NO_MEMORY. Real-time: no. */
-stic_status stic_trace_open(const char *path, const stic_trace_options *options,
-                            stic_trace_reader **reader, stic_error *err);
+stic_status stic_trace_open(const char *path, const stic_trace_options *options, stic_trace_reader **reader,
+                            stic_error *err);
 void stic_trace_close(stic_trace_reader *reader); /* NULL allowed */
 
 /* The next sample, in constant memory however long the trace. All rules are checked: the format

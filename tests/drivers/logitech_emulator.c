@@ -181,25 +181,16 @@ static void command(emulator *e, uint8_t letter, int64_t now_ns)
     e->resets++;
     e->deaf_until_ns = now_ns + RESET_NS;
     break;
-  case 'D':
-    e->streaming = false;
-    break;
+  case 'D': e->streaming = false; break;
   case 'S':
     e->streaming = true;
     e->stream_start_ns = e->record_ns = now_ns + EMULATOR_PERIOD_NS;
     break;
-  case ENQ:
-    reply(e, e->faults.diagnostics, sizeof e->faults.diagnostics, now_ns);
-    break;
-  case 'm':
-    inform(e, now_ns);
-    break;
+  case ENQ: reply(e, e->faults.diagnostics, sizeof e->faults.diagnostics, now_ns); break;
+  case 'm': inform(e, now_ns); break;
   case 'A':
-  case 'O':
-    e->sound_off = letter == 'O';
-    break;
-  default:
-    break;
+  case 'O': e->sound_off = letter == 'O'; break;
+  default: break;
   }
 }
 

@@ -24,22 +24,22 @@ typedef struct emulator_record {
 void emulator_pack(const emulator_record *record, uint8_t bytes[EMULATOR_RECORD]);
 
 typedef struct emulator_faults {
-  bool out;                /* every record out of range */
-  bool never;              /* ... and never seen: all zero */
+  bool out;   /* every record out of range */
+  bool never; /* ... and never seen: all zero */
   bool fringe;
-  bool silent;             /* 2D mode: ignores all */
-  int64_t drop_at;         /* byte of the stream, from 0, that is lost; EMULATOR_NEVER: none */
-  int64_t insert_at;       /* ... before which `insert` is put in */
+  bool silent;       /* 2D mode: ignores all */
+  int64_t drop_at;   /* byte of the stream, from 0, that is lost; EMULATOR_NEVER: none */
+  int64_t insert_at; /* ... before which `insert` is put in */
   uint8_t insert;
-  int64_t flip_at;         /* ... in which `flip` is inverted */
+  int64_t flip_at; /* ... in which `flip` is inverted */
   uint8_t flip;
-  int64_t stall_at;        /* record before which the stream pauses */
+  int64_t stall_at; /* record before which the stream pauses */
   int64_t stall_ns;
-  uint8_t diagnostics[2];  /* default BF 3F */
-  int record_size;         /* that *m tells, default 16 */
-  bool no_information;     /* does not answer *m */
-  int glitch;              /* so many records tell the right button when the left one is pressed */
-  bool split;              /* a write per byte */
+  uint8_t diagnostics[2]; /* default BF 3F */
+  int record_size;        /* that *m tells, default 16 */
+  bool no_information;    /* does not answer *m */
+  int glitch;             /* so many records tell the right button when the left one is pressed */
+  bool split;             /* a write per byte */
 } emulator_faults;
 
 /* Where the hand is `t_ns` after the start of the stream; `context` is the caller's. */
@@ -51,13 +51,13 @@ typedef struct emulator {
   void *context;
   /* Read-only outside. */
   bool streaming, wrong_format;
-  int64_t resets, refused;  /* commands that are not allowed while it streams */
-  int64_t records, bytes;   /* sent of the stream */
+  int64_t resets, refused; /* commands that are not allowed while it streams */
+  int64_t records, bytes;  /* sent of the stream */
   bool sound_off;
   /* Inside. */
   bool in_command, seen;
   int64_t deaf_until_ns, stream_start_ns, record_ns;
-  int64_t pressed_at;       /* record at which the left button was pressed last */
+  int64_t pressed_at; /* record at which the left button was pressed last */
   bool was_pressed;
   uint8_t queue[EMULATOR_QUEUE];
   int64_t due_ns[EMULATOR_QUEUE];

@@ -165,7 +165,8 @@ static stic_supervisor *open_supervised(history *h, int64_t give_up_ns)
 }
 
 /* Polls until a sample fits all of `flags` and `buttons`; others must be in order of time. */
-static stic_device_sample wait_for(stic_supervisor *s, unsigned flags, unsigned mask, uint32_t buttons, int64_t limit_ns)
+static stic_device_sample wait_for(stic_supervisor *s, unsigned flags, unsigned mask, uint32_t buttons,
+                                   int64_t limit_ns)
 {
   static int64_t last_ns;
   const int64_t end_ns = stic_clock_ns() + limit_ns;
@@ -325,10 +326,14 @@ static void test_sample_driver(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_watch_stale),   cmocka_unit_test(test_watch_rest),
-    cmocka_unit_test(test_backoff),       cmocka_unit_test(test_stale),
-    cmocka_unit_test(test_unplug_and_replug), cmocka_unit_test(test_lost_for_good),
-    cmocka_unit_test(test_absent),        cmocka_unit_test(test_sample_driver),
+    cmocka_unit_test(test_watch_stale),
+    cmocka_unit_test(test_watch_rest),
+    cmocka_unit_test(test_backoff),
+    cmocka_unit_test(test_stale),
+    cmocka_unit_test(test_unplug_and_replug),
+    cmocka_unit_test(test_lost_for_good),
+    cmocka_unit_test(test_absent),
+    cmocka_unit_test(test_sample_driver),
   };
 
   return cmocka_run_group_tests(tests, NULL, stic_test_clean_up);

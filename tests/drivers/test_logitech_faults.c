@@ -17,15 +17,15 @@ typedef struct rig {
   stic_logitech_protocol driver;
   stic_watch watch;
   int64_t now_ns;
-  int result;              /* of the last advance */
-  int64_t unplug_ns;       /* from then on bytes go nowhere */
-  size_t piece;            /* largest read */
+  int result;        /* of the last advance */
+  int64_t unplug_ns; /* from then on bytes go nowhere */
+  size_t piece;      /* largest read */
   /* what was seen */
   int64_t samples, tracked, wrong; /* wrong: off by more than 1 mm */
   int64_t stale_ns, lost_ns;
   int64_t last_good_ns, longest_gap_ns; /* between correct samples */
-  double worst;            /* m, of tracked samples */
-  bool gripped;            /* by the last sample, or let go as stale */
+  double worst;                         /* m, of tracked samples */
+  bool gripped;                         /* by the last sample, or let go as stale */
   uint32_t buttons_seen;
   stic_device_sample last;
 } rig;
@@ -130,8 +130,7 @@ static void follow_watch(rig *r)
     r->lost_ns = r->now_ns;
     stic_watch_lost(&r->watch, r->now_ns);
     break;
-  default:
-    break;
+  default: break;
   }
 }
 
@@ -221,8 +220,8 @@ static void hurt(rig *r, tally *t)
 
 static void tell(const char *name, const tally *t)
 {
-  print_message("%s: %lld runs, wrong samples %lld, worst %.4f m, longest time without a right one %.1f ms\n", name,
-                (long long)t->runs, (long long)t->wrong, t->worst, (double)t->longest_gap_ns / 1e6);
+  print_message("%s: %lld runs, wrong samples %lld, worst %.4f m, longest time without a right one %.1f ms\n",
+                name, (long long)t->runs, (long long)t->wrong, t->worst, (double)t->longest_gap_ns / 1e6);
 }
 
 static void test_dropped(void **state)
@@ -293,7 +292,7 @@ static void test_stalled(void **state)
       rig_run(&r, r.now_ns + MS);
     assert_true(r.stale_ns > 0 && !r.gripped);
     slowest_ns = r.stale_ns - r.last_good_ns > slowest_ns && r.last_good_ns > 0 ? r.stale_ns - r.last_good_ns
-                                                                              : slowest_ns;
+                                                                                : slowest_ns;
     rig_run(&r, r.now_ns + 1500 * (int64_t)MS);
     assert_true(r.now_ns - r.last_good_ns < 40 * MS);
     assert_int_equal(r.lost_ns, 0);
@@ -314,7 +313,8 @@ static void test_unplugged(void **state)
     rig_begin(&r);
     rig_run(&r, at_ns + 20 * (int64_t)S);
     /* Either a command could not be sent any more, or silence was noticed. */
-    assert_true(r.result == STIC_DRIVER_LOST || (r.stale_ns > 0 && r.stale_ns - at_ns <= 61 * MS && r.lost_ns > 0));
+    assert_true(r.result == STIC_DRIVER_LOST ||
+                (r.stale_ns > 0 && r.stale_ns - at_ns <= 61 * MS && r.lost_ns > 0));
     assert_int_equal(r.wrong, 0);
     if (r.samples > 0)
       assert_false(r.gripped && r.result == 0);
@@ -343,8 +343,8 @@ static void test_out(void **state)
   r.unit.faults.out = false;
   r.unit.faults.fringe = true;
   rig_run(&r, r.now_ns + 500 * MS);
-  assert_int_equal(r.last.flags, STIC_SAMPLE_POSITION | STIC_SAMPLE_ORIENTATION | STIC_SAMPLE_TRACKED |
-                                   STIC_SAMPLE_FRINGE);
+  assert_int_equal(r.last.flags,
+                   STIC_SAMPLE_POSITION | STIC_SAMPLE_ORIENTATION | STIC_SAMPLE_TRACKED | STIC_SAMPLE_FRINGE);
   assert_int_equal(r.wrong, 0);
 }
 
@@ -461,12 +461,18 @@ static void test_already_streaming(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_good),        cmocka_unit_test(test_dropped),
-    cmocka_unit_test(test_inserted),    cmocka_unit_test(test_flipped),
-    cmocka_unit_test(test_stalled),     cmocka_unit_test(test_unplugged),
-    cmocka_unit_test(test_out),         cmocka_unit_test(test_never_seen),
-    cmocka_unit_test(test_glitch),      cmocka_unit_test(test_silent),
-    cmocka_unit_test(test_diagnostics), cmocka_unit_test(test_information),
+    cmocka_unit_test(test_good),
+    cmocka_unit_test(test_dropped),
+    cmocka_unit_test(test_inserted),
+    cmocka_unit_test(test_flipped),
+    cmocka_unit_test(test_stalled),
+    cmocka_unit_test(test_unplugged),
+    cmocka_unit_test(test_out),
+    cmocka_unit_test(test_never_seen),
+    cmocka_unit_test(test_glitch),
+    cmocka_unit_test(test_silent),
+    cmocka_unit_test(test_diagnostics),
+    cmocka_unit_test(test_information),
     cmocka_unit_test(test_already_streaming),
   };
 

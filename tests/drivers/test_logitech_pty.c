@@ -93,7 +93,8 @@ static void test_stream(void **state)
     if (count > 1 && stic_clock_ns() - sample.t_ns > worst_ns)
       worst_ns = stic_clock_ns() - sample.t_ns;
   }
-  print_message("%d samples, oldest %.2f ms when given out (8.33 ms are the wire's)\n", count, (double)worst_ns / 1e6);
+  print_message("%d samples, oldest %.2f ms when given out (8.33 ms are the wire's)\n", count,
+                (double)worst_ns / 1e6);
   assert_true(count > 55);
   assert_int_equal(device->state, STIC_CONNECTION_RUNNING);
   assert_int_equal(device->counters.bad_records, 0);
@@ -251,9 +252,10 @@ static void test_no_port(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_stream),       cmocka_unit_test(test_drain), cmocka_unit_test(test_wrong_unit),
-    cmocka_unit_test(test_silent_unit),  cmocka_unit_test(test_never_blocks),
-    cmocka_unit_test(test_port),         cmocka_unit_test(test_no_port),
+    cmocka_unit_test(test_stream),       cmocka_unit_test(test_drain),
+    cmocka_unit_test(test_wrong_unit),   cmocka_unit_test(test_silent_unit),
+    cmocka_unit_test(test_never_blocks), cmocka_unit_test(test_port),
+    cmocka_unit_test(test_no_port),
   };
 
   return cmocka_run_group_tests(tests, NULL, stic_test_clean_up);

@@ -140,7 +140,8 @@ static void test_cut(void **state)
   int count;
 
   (void)state;
-  assert_int_equal(stic_raw_open(stic_test_write("raw", SERIAL "\n1 80 01\r\n1 02\n2 8"), &reader, &err), STIC_OK);
+  assert_int_equal(stic_raw_open(stic_test_write("raw", SERIAL "\n1 80 01\r\n1 02\n2 8"), &reader, &err),
+                   STIC_OK);
   assert_int_equal(read_all(reader, &count, &record, &err), STIC_RAW_END);
   assert_int_equal(count, 2);
   stic_raw_close(reader);
@@ -149,9 +150,10 @@ static void test_cut(void **state)
 /* As hid-recorder writes it. */
 static void test_hid_recorder(void **state)
 {
-  const char *text = "# name\nD: 1\nN: second\nD: 0\nR: 3 05 01 c0\nN: 3Dconnexion SpaceNavigator\nP: usb-0/input0\n"
-                     "I: 3 046d c626\nE: 000000.000000 7 01 00 00 00 00 00 00\n"
-                     "E: 000001.008001 7 02 00 00 e2 ff 00 00\nD: 1\nE: 10.000000 1 ff\n";
+  const char *text =
+    "# name\nD: 1\nN: second\nD: 0\nR: 3 05 01 c0\nN: 3Dconnexion SpaceNavigator\nP: usb-0/input0\n"
+    "I: 3 046d c626\nE: 000000.000000 7 01 00 00 00 00 00 00\n"
+    "E: 000001.008001 7 02 00 00 e2 ff 00 00\nD: 1\nE: 10.000000 1 ff\n";
   const uint8_t second[] = {2, 0, 0, 0xe2, 0xff, 0, 0};
   const stic_raw_device *device;
   stic_raw_reader *reader;
@@ -195,8 +197,9 @@ static void write_hid(const char *path)
   assert_int_equal(stic_raw_create(path, STIC_RAW_HID, &device, &writer, &err), STIC_OK);
   for (int i = 0; i < 100; i++) {
     memset(bytes, i, sizeof bytes);
-    assert_int_equal(stic_raw_write(writer, i / 10 % 2, 5000000000 + i * INT64_C(4000000), bytes, sizeof bytes, &err),
-                     STIC_OK);
+    assert_int_equal(
+      stic_raw_write(writer, i / 10 % 2, 5000000000 + i * INT64_C(4000000), bytes, sizeof bytes, &err),
+      STIC_OK);
   }
   assert_int_equal(stic_raw_finish(writer, &err), STIC_OK);
 }
@@ -260,7 +263,8 @@ static void test_serial_decodes(void **state)
   assert_int_equal(stic_raw_open(path, &reader, &err), STIC_OK);
   while (stic_raw_next(reader, &record, &err) == STIC_RAW_RECORD) {
     for (size_t at = 0; at < record.length; at += used) {
-      if (stic_logitech_stream_next(&replayed, record.bytes + at, record.length - at, record.t_ns, &used, &sample))
+      if (stic_logitech_stream_next(&replayed, record.bytes + at, record.length - at, record.t_ns, &used,
+                                    &sample))
         assert_memory_equal(&sample, &samples[back++], sizeof sample);
     }
   }
@@ -272,9 +276,10 @@ static void test_serial_decodes(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_wrong),        cmocka_unit_test(test_long),     cmocka_unit_test(test_absent),
-    cmocka_unit_test(test_cut),          cmocka_unit_test(test_hid_recorder),
-    cmocka_unit_test(test_hid_back),     cmocka_unit_test(test_serial_decodes),
+    cmocka_unit_test(test_wrong),          cmocka_unit_test(test_long),
+    cmocka_unit_test(test_absent),         cmocka_unit_test(test_cut),
+    cmocka_unit_test(test_hid_recorder),   cmocka_unit_test(test_hid_back),
+    cmocka_unit_test(test_serial_decodes),
   };
 
   return cmocka_run_group_tests(tests, NULL, stic_test_clean_up);

@@ -70,7 +70,8 @@ static void test_absent(void **state)
   (void)state;
   assert_int_equal(stic_tracker_read("/no/such/file", false, &settings, &err), STIC_BAD_INPUT);
   stic_test_contains(err.message, "cannot open the tracker");
-  assert_int_equal(stic_tracker_read(stic_test_write("s.yaml", stic_test_scene), false, &settings, &err), STIC_OK);
+  assert_int_equal(stic_tracker_read(stic_test_write("s.yaml", stic_test_scene), false, &settings, &err),
+                   STIC_OK);
   assert_false(settings.filtered);
   assert_true(settings.frame.buttons[0] == 0 && settings.frame.axes[0] == 1 && settings.rate.linear == 1);
 }
@@ -99,22 +100,30 @@ static void test_all_keys(void **state)
   stic_error err;
 
   (void)state;
-  assert_int_equal(stic_tracker_read(stic_test_write("t.yaml",
-    HEAD "  axes: [x, -z, y]\n  scale: 0.5\n  offset: [1, 2, 3]\n  buttons: {grip: 5, reset: none, clutch: 31}\n"
-    "  filter: {min_cutoff: [1, 2], beta: [3, 4], derivative_cutoff: [5, 6]}\n"
-    "  rate: {linear: 2, angular: 3, dead_zone: [0.1, 0.2], auto_zero: false, home: [7, 8, 9]}\n"), true, &s, &err),
+  assert_int_equal(
+    stic_tracker_read(
+      stic_test_write(
+        "t.yaml", HEAD
+        "  axes: [x, -z, y]\n  scale: 0.5\n  offset: [1, 2, 3]\n  buttons: {grip: 5, reset: none, clutch: 31}\n"
+        "  filter: {min_cutoff: [1, 2], beta: [3, 4], derivative_cutoff: [5, 6]}\n"
+        "  rate: {linear: 2, angular: 3, dead_zone: [0.1, 0.2], auto_zero: false, home: [7, 8, 9]}\n"),
+      true, &s, &err),
     STIC_OK);
   assert_memory_equal(s.frame.axes, axes, sizeof axes);
   assert_memory_equal(s.frame.hand_axes, hand, sizeof hand);
   assert_true(s.frame.scale == 0.5 && s.frame.offset[2] == 3);
   assert_true(s.frame.buttons[0] == 5 && s.frame.buttons[1] == -1 && s.frame.buttons[2] == 31);
-  assert_true(s.filtered && s.filter.min_cutoff[1] == 2 && s.filter.beta[0] == 3 && s.filter.derivative_cutoff[1] == 6);
+  assert_true(s.filtered && s.filter.min_cutoff[1] == 2 && s.filter.beta[0] == 3 &&
+              s.filter.derivative_cutoff[1] == 6);
   assert_true(s.rate.linear == 2 && s.rate.angular == 3 && s.rate.dead_zone[1] == 0.2 && !s.rate.auto_zero &&
               s.rate.home_position[0] == 7);
-  assert_int_equal(stic_tracker_read(stic_test_write("t.yaml",
-    HEAD "  hand_axes: [x, z, -y]\n  filter: {}\n"), true, &s, &err), STIC_OK);
+  assert_int_equal(
+    stic_tracker_read(stic_test_write("t.yaml", HEAD "  hand_axes: [x, z, -y]\n  filter: {}\n"), true, &s,
+                      &err),
+    STIC_OK);
   /* The hand's y is the part's z, its z the part's -y. */
-  assert_true(s.frame.hand_axes[7] == 1 && s.frame.hand_axes[5] == -1 && s.filtered && s.filter.beta[0] == 0.5);
+  assert_true(s.frame.hand_axes[7] == 1 && s.frame.hand_axes[5] == -1 && s.filtered &&
+              s.filter.beta[0] == 0.5);
 }
 
 /* A puck pushed along its own z, mounted so that this is up, moves the hand up from its home. */
@@ -126,9 +135,13 @@ static void test_way(void **state)
   stic_error err;
 
   (void)state;
-  assert_int_equal(stic_tracker_read(stic_test_write("t.yaml",
-    HEAD "  axes: [x, z, -y]\n  scale: 2\n  buttons: {grip: 3}\n  rate: {dead_zone: [0, 0], home: [0, 1, 0]}\n"), true,
-    &settings, &err), STIC_OK);
+  assert_int_equal(
+    stic_tracker_read(
+      stic_test_write(
+        "t.yaml", HEAD
+        "  axes: [x, z, -y]\n  scale: 2\n  buttons: {grip: 3}\n  rate: {dead_zone: [0, 0], home: [0, 1, 0]}\n"),
+      true, &settings, &err),
+    STIC_OK);
   stic_tracker_begin(&tracker, &settings, STIC_DRIVER_RATE);
   for (int i = 0; i <= 10; i++) {
     memset(&s, 0, sizeof s);

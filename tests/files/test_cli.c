@@ -75,13 +75,15 @@ static void test_usage(void **state)
 
 static void test_bad_files(void **state)
 {
-  const char *log = stic_test_path("log.csv"), *bad_scene = stic_test_write("bad.yaml", "stiction: 1\nsize: 3\n");
+  const char *log = stic_test_path("log.csv"),
+             *bad_scene = stic_test_write("bad.yaml", "stiction: 1\nsize: 3\n");
 
   (void)state;
   expect(stic_test_program("replay", bad_scene, trace, NULL), 3, "bad.yaml:2: unknown key 'size'");
   expect(stic_test_program("replay", scene, bad_trace, "--log", log, NULL), 3, "bad.csv:3: found 2 fields");
   assert_int_equal(access(log, F_OK), -1);
-  expect(stic_test_program("replay", scene, bad_trace, "--lenient", "--log", log, NULL), 0, "1 bad line passed over");
+  expect(stic_test_program("replay", scene, bad_trace, "--lenient", "--log", log, NULL), 0,
+         "1 bad line passed over");
   assert_int_equal(access(log, F_OK), 0);
   unlink(log);
   expect(stic_test_program("replay", scene, "/nonexistent", NULL), 3, "No such file");
@@ -96,8 +98,9 @@ static void test_outputs(void **state)
   char *first, *second;
 
   (void)state;
-  expect(stic_test_program("replay", scene, trace, "--log", log, "--events", stic_test_path("e.csv"), "--timing",
-                           stic_test_path("t.json"), NULL), 0, "");
+  expect(stic_test_program("replay", scene, trace, "--log", log, "--events", stic_test_path("e.csv"),
+                           "--timing", stic_test_path("t.json"), NULL),
+         0, "");
   expect(stic_test_program("replay", scene, trace, "--log", again, NULL), 0, "");
   first = stic_test_read(log);
   second = stic_test_read(again);
@@ -106,7 +109,9 @@ static void test_outputs(void **state)
   free(second);
   expect(stic_test_program("replay", scene, trace, "--log", "/dev/full", NULL), 5, "No space left");
   expect(stic_test_program("replay", scene, trace, "--log", "/nonexistent/log", NULL), 5, "cannot write");
-  expect(stic_test_program("replay", scene, trace, "--events", "/nonexistent/e", "--log", stic_test_path("no.csv"), NULL), 5, "");
+  expect(stic_test_program("replay", scene, trace, "--events", "/nonexistent/e", "--log",
+                           stic_test_path("no.csv"), NULL),
+         5, "");
   assert_int_equal(access(stic_test_path("no.csv"), F_OK), -1);
   assert_int_equal(stic_test_count_entries(".tmp"), 0);
 }
@@ -186,8 +191,9 @@ static void test_run_and_replay(void **state)
 
   (void)state;
   snprintf(device, sizeof device, "trace:speed=100,file=%s", trace);
-  expect(stic_test_program("run", scene, "--device", device, "--record", record, "--log", stic_test_path("l1.csv"),
-                           "--timing", stic_test_path("t1.json"), NULL), 0, "500 samples");
+  expect(stic_test_program("run", scene, "--device", device, "--record", record, "--log",
+                           stic_test_path("l1.csv"), "--timing", stic_test_path("t1.json"), NULL),
+         0, "500 samples");
   expect(stic_test_program("replay", scene, record, "--log", stic_test_path("l2.csv"), NULL), 0, "");
   live = stic_test_read(stic_test_path("l1.csv"));
   again = stic_test_read(stic_test_path("l2.csv"));
@@ -217,8 +223,9 @@ static void test_closed_pipe(void **state)
   int status;
 
   (void)state;
-  snprintf(command, sizeof command, "( \"$STICTION\" replay %s %s --log - 2>%s; echo $? >%s ) | head -1 >/dev/null",
-           scene, trace, stic_test_path("pipe-err"), stic_test_path("pipe-code"));
+  snprintf(command, sizeof command,
+           "( \"$STICTION\" replay %s %s --log - 2>%s; echo $? >%s ) | head -1 >/dev/null", scene, trace,
+           stic_test_path("pipe-err"), stic_test_path("pipe-code"));
   status = system(command);
   assert_int_equal(status, 0);
   text = stic_test_read(stic_test_path("pipe-err"));
@@ -235,13 +242,17 @@ static void test_frames(void **state)
 
   (void)state;
   free(text);
-  expect(stic_test_program("replay", scene, short_trace, "--frames", folder, "--size", "160x120", NULL), 0, "");
+  expect(stic_test_program("replay", scene, short_trace, "--frames", folder, "--size", "160x120", NULL), 0,
+         "");
   snprintf(path, sizeof path, "%s/frame_000015.png", folder);
   assert_int_equal(access(path, F_OK), 0);
   snprintf(path, sizeof path, "%s/frame_000016.png", folder);
   assert_int_equal(access(path, F_OK), -1);
-  expect(stic_test_program("replay", scene, short_trace, "--frames", folder, "--size", "160x120", NULL), 5, "--force");
-  expect(stic_test_program("replay", scene, short_trace, "--frames", folder, "--size", "160x120", "--force", NULL), 0, "");
+  expect(stic_test_program("replay", scene, short_trace, "--frames", folder, "--size", "160x120", NULL), 5,
+         "--force");
+  expect(
+    stic_test_program("replay", scene, short_trace, "--frames", folder, "--size", "160x120", "--force", NULL),
+    0, "");
 }
 
 static void test_bench(void **state)
@@ -258,10 +269,12 @@ static void test_bench(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_help),          cmocka_unit_test(test_usage),       cmocka_unit_test(test_bad_files),
-    cmocka_unit_test(test_outputs),       cmocka_unit_test(test_signal_replay), cmocka_unit_test(test_signal_run),
-    cmocka_unit_test(test_run_and_replay), cmocka_unit_test(test_standard_streams), cmocka_unit_test(test_closed_pipe),
-    cmocka_unit_test(test_frames),        cmocka_unit_test(test_bench),
+    cmocka_unit_test(test_help),           cmocka_unit_test(test_usage),
+    cmocka_unit_test(test_bad_files),      cmocka_unit_test(test_outputs),
+    cmocka_unit_test(test_signal_replay),  cmocka_unit_test(test_signal_run),
+    cmocka_unit_test(test_run_and_replay), cmocka_unit_test(test_standard_streams),
+    cmocka_unit_test(test_closed_pipe),    cmocka_unit_test(test_frames),
+    cmocka_unit_test(test_bench),
   };
 
   return cmocka_run_group_tests(tests, set_up, stic_test_clean_up);

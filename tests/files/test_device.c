@@ -12,12 +12,20 @@ static void test_specifications(void **state)
   static const struct {
     const char *text, *words;
   } bad[] = {
-    {"", "no name"}, {":file=x", "no name"}, {"trace:", "expected NAME:key=value"}, {"trace:=x", "expected NAME:key=value"},
-    {"trace:file=a,,loop", "expected NAME:key=value"}, {"none:file=a", "unknown device 'none'; expected"},
-    {"trace:fil=a", "unknown key 'fil'; expected file=, speed=, loop"}, {"trace:file", "'file' has no value"},
-    {"trace:file=", "'file' has no value"}, {"trace:file=a,loop=1", "'loop' takes no value"},
-    {"trace:file=a,file=b", "'file' is given twice"}, {"trace:loop", "expected trace:file=FILE"},
-    {"trace:file=a,speed=0", "speed is '0'; expected a number from"}, {"trace:file=a,speed=fast", "speed is 'fast'"},
+    {"", "no name"},
+    {":file=x", "no name"},
+    {"trace:", "expected NAME:key=value"},
+    {"trace:=x", "expected NAME:key=value"},
+    {"trace:file=a,,loop", "expected NAME:key=value"},
+    {"none:file=a", "unknown device 'none'; expected"},
+    {"trace:fil=a", "unknown key 'fil'; expected file=, speed=, loop"},
+    {"trace:file", "'file' has no value"},
+    {"trace:file=", "'file' has no value"},
+    {"trace:file=a,loop=1", "'loop' takes no value"},
+    {"trace:file=a,file=b", "'file' is given twice"},
+    {"trace:loop", "expected trace:file=FILE"},
+    {"trace:file=a,speed=0", "speed is '0'; expected a number from"},
+    {"trace:file=a,speed=fast", "speed is 'fast'"},
     {"trace:file=-,loop", "standard input cannot loop"},
   };
   stic_device_spec spec;
@@ -116,8 +124,8 @@ static void test_bad_trace(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_specifications), cmocka_unit_test(test_list), cmocka_unit_test(test_pace),
-    cmocka_unit_test(test_loop), cmocka_unit_test(test_bad_trace),
+    cmocka_unit_test(test_specifications), cmocka_unit_test(test_list),      cmocka_unit_test(test_pace),
+    cmocka_unit_test(test_loop),           cmocka_unit_test(test_bad_trace),
   };
 
   return cmocka_run_group_tests(tests, NULL, stic_test_clean_up);

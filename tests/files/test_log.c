@@ -98,8 +98,11 @@ static void test_wrong_logs(void **state)
     {"# stiction-log 1\n", 1, "ends before its column header"},
     {"# stiction-log 1\nt,state\n", 2, "the columns are 't,state'"},
     {"# stiction-log 1\n" STIC_LOG_HEADER "\n1,free\n", 3, "found 2 fields; expected 42"},
-    {"# stiction-log 1\n" STIC_LOG_HEADER "\n1,fre,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,,,,,,,,,,,,,,,,,,,,,,,,\n", 3, "column 2 is 'fre'"},
-    {"# stiction-log 1\n" STIC_LOG_HEADER "\n1,free,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,1,,,,,,,,,,,,,,,,,,,,,,,,\n", 3, "column 19 is ''"},
+    {"# stiction-log 1\n" STIC_LOG_HEADER "\n1,fre,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,,,,,,,,,,,,,,,,,,,,,,,,\n",
+     3, "column 2 is 'fre'"},
+    {"# stiction-log 1\n" STIC_LOG_HEADER
+     "\n1,free,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,1,,,,,,,,,,,,,,,,,,,,,,,,\n",
+     3, "column 19 is ''"},
     {"# stiction-log 1\n" STIC_LOG_HEADER "\n1,free", 3, "no end"},
   };
 
@@ -124,7 +127,8 @@ static void test_wrong_logs(void **state)
 static void test_events(void **state)
 {
   const char *path = stic_test_path("events.csv");
-  const stic_event events[] = {{0.1, STIC_EVENT_TAKE, -1, -1, 1, 2, 0}, {0.5, STIC_EVENT_SLIP, 3, 1, -0.25, 0, 0.125}};
+  const stic_event events[] = {{0.1, STIC_EVENT_TAKE, -1, -1, 1, 2, 0},
+                               {0.5, STIC_EVENT_SLIP, 3, 1, -0.25, 0, 0.125}};
   stic_outfile *out;
   char *text;
 
@@ -156,8 +160,12 @@ static void test_longest_row(void **state)
   r.iterations = INT32_MIN;
   r.contact_count = STIC_LOG_CONTACTS;
   for (int i = 0; i < STIC_LOG_CONTACTS; i++) {
-    const stic_contact c = {INT32_MIN, INT32_MIN, -2.2250738585072014e-308, -2.2250738585072014e-308,
-                            -2.2250738585072014e-308, -2.2250738585072014e-308};
+    const stic_contact c = {INT32_MIN,
+                            INT32_MIN,
+                            -2.2250738585072014e-308,
+                            -2.2250738585072014e-308,
+                            -2.2250738585072014e-308,
+                            -2.2250738585072014e-308};
 
     r.contacts[i] = c;
   }

@@ -80,14 +80,21 @@ static const wrong cases[] = {
   {"[0.16, 0.08, 0.10]", "[0.16,\n    -0.08, 0.10]", 5, "object.size is '-0.08'"},
   {"[0.16, 0.08, 0.10]", "[0.16, 0.08, 1e10]", 4, "object.size is '1e10'"},
   {"size: [0.16, 0.08, 0.10]", "size: [0.16, 0.08, 0.10]\n  depth: 1", 5, "object.depth beside size"},
-  {"size: [0.16, 0.08, 0.10]", "size: [0.16, 0.08, 0.10]\n  polygon: [[0, 0], [1, 0], [0, 1]]", 5, "both size and polygon"},
+  {"size: [0.16, 0.08, 0.10]", "size: [0.16, 0.08, 0.10]\n  polygon: [[0, 0], [1, 0], [0, 1]]", 5,
+   "both size and polygon"},
   {"size: [0.16, 0.08, 0.10]", "polygon: [[0, 0], [1, 0]]", 4, "object.polygon is a list of 2"},
-  {"size: [0.16, 0.08, 0.10]", "polygon:\n  - [0, 0]\n  - [1]\n  - [0, 1]", 6, "vertex 1 of object.polygon is a list of 1"},
+  {"size: [0.16, 0.08, 0.10]", "polygon:\n  - [0, 0]\n  - [1]\n  - [0, 1]", 6,
+   "vertex 1 of object.polygon is a list of 1"},
   {"size: [0.16, 0.08, 0.10]", "polygon: [[0, 0], [0, 0.1], [0.1, 0]]", 4, "clockwise"},
-  {"size: [0.16, 0.08, 0.10]", "polygon:\n  - [-0.1, -0.1]\n  - [0.1, -0.1]\n  - [0, 0]\n  - [0.1, 0.1]\n  - [-0.1, 0.1]", 7, "not convex"},
-  {"size: [0.16, 0.08, 0.10]", "polygon:\n  - [-0.1, -0.1]\n  - [0, -0.1]\n  - [0.1, -0.1]\n  - [0, 0.1]", 6, "not convex"},
-  {"size: [0.16, 0.08, 0.10]", "polygon:\n  - [-0.1, -0.1]\n  - [-0.1, -0.1]\n  - [0.1, -0.1]\n  - [0, 0.1]", 6, "vertex 1 is the same as vertex 0"},
-  {"size: [0.16, 0.08, 0.10]", "polygon: [[0, 1], [-0.59, -0.81], [0.95, 0.31], [-0.95, 0.31], [0.59, -0.81]]", 4, "not convex"},
+  {"size: [0.16, 0.08, 0.10]",
+   "polygon:\n  - [-0.1, -0.1]\n  - [0.1, -0.1]\n  - [0, 0]\n  - [0.1, 0.1]\n  - [-0.1, 0.1]", 7,
+   "not convex"},
+  {"size: [0.16, 0.08, 0.10]", "polygon:\n  - [-0.1, -0.1]\n  - [0, -0.1]\n  - [0.1, -0.1]\n  - [0, 0.1]", 6,
+   "not convex"},
+  {"size: [0.16, 0.08, 0.10]", "polygon:\n  - [-0.1, -0.1]\n  - [-0.1, -0.1]\n  - [0.1, -0.1]\n  - [0, 0.1]",
+   6, "vertex 1 is the same as vertex 0"},
+  {"size: [0.16, 0.08, 0.10]",
+   "polygon: [[0, 1], [-0.59, -0.81], [0.95, 0.31], [-0.95, 0.31], [0.59, -0.81]]", 4, "not convex"},
   {"size: [0.16, 0.08, 0.10]", "polygon: [[0, 0], [1e-10, 0], [0, 1e-10]]", 4, "large; expected"},
   /* surfaces */
   {"surfaces:\n", "surfaces: []\nx:\n", 8, "expected a list of 1 to 256 surfaces"},
@@ -138,7 +145,8 @@ static void test_good_scene(void **state)
   stic_error err;
 
   (void)state;
-  assert_int_equal(stic_scene_read(stic_test_write("scene.yaml", stic_test_scene), NULL, 0, &s, &err), STIC_OK);
+  assert_int_equal(stic_scene_read(stic_test_write("scene.yaml", stic_test_scene), NULL, 0, &s, &err),
+                   STIC_OK);
   assert_string_equal(s.name, "test");
   assert_int_equal(s.vertex_count, 4);
   assert_true(s.vertices[0][0] == -0.08 && s.vertices[0][1] == -0.04 && s.vertices[2][0] == 0.08);
@@ -204,11 +212,14 @@ static void test_limits(void **state)
   stic_test_contains(err.message, "surfaces has 257 items");
 
   memset(text, '#', 1 << 21);
-  assert_int_equal(stic_scene_read(stic_test_write_bytes("s.yaml", text, 1 << 21), NULL, 0, &s, &err), STIC_BAD_INPUT);
+  assert_int_equal(stic_scene_read(stic_test_write_bytes("s.yaml", text, 1 << 21), NULL, 0, &s, &err),
+                   STIC_BAD_INPUT);
   stic_test_contains(err.message, "more than 1048576 bytes");
   memset(text, '[', 1 << 19);
-  assert_int_equal(stic_scene_read(stic_test_write_bytes("s.yaml", text, 1 << 19), NULL, 0, &s, &err), STIC_BAD_INPUT);
-  assert_int_equal(stic_scene_read(stic_test_write_bytes("s.yaml", "a: 1\nb\0: 1\n", 11), NULL, 0, &s, &err), STIC_BAD_INPUT);
+  assert_int_equal(stic_scene_read(stic_test_write_bytes("s.yaml", text, 1 << 19), NULL, 0, &s, &err),
+                   STIC_BAD_INPUT);
+  assert_int_equal(stic_scene_read(stic_test_write_bytes("s.yaml", "a: 1\nb\0: 1\n", 11), NULL, 0, &s, &err),
+                   STIC_BAD_INPUT);
   assert_int_equal(err.line, 2);
   stic_test_contains(err.message, "zero byte");
   assert_int_equal(stic_scene_read("/nonexistent/s.yaml", NULL, 0, &s, &err), STIC_BAD_INPUT);
@@ -299,14 +310,16 @@ static void test_all_problems(void **state)
   static const char bad[] =
     "stiction: 1\nobject:\n  size: [0.16, x, 0.1]\n  colour: red\nhand: {stiffness: -1}\n"
     "friction: {static: 0.3, dynamic: 0.5}\nsurfaces:\n  - {point: [0, 0]}\n  - {point: [0, 0], normal_deg: 0}\n";
-  static const char *const expected[] = {":3: object.size has 'x'", ":4: unknown key 'colour'",
-                                         ":5: hand.stiffness is '-1'", ":5: hand.rotational_stiffness is missing",
-                                         ":6: dynamic friction", ":8: surfaces.0.normal_deg is missing"};
+  static const char *const expected[] = {
+    ":3: object.size has 'x'",    ":4: unknown key 'colour'",
+    ":5: hand.stiffness is '-1'", ":5: hand.rotational_stiffness is missing",
+    ":6: dynamic friction",       ":8: surfaces.0.normal_deg is missing"};
   counts c = {0, 0, ""};
   stic_scene s;
 
   (void)state;
-  assert_int_equal(stic_scene_read_all(stic_test_write("s.yaml", bad), NULL, 0, &s, count_problem, &c), STIC_BAD_INPUT);
+  assert_int_equal(stic_scene_read_all(stic_test_write("s.yaml", bad), NULL, 0, &s, count_problem, &c),
+                   STIC_BAD_INPUT);
   for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++)
     stic_test_contains(c.all, expected[i]);
   assert_int_equal(c.errors, sizeof expected / sizeof expected[0]);
@@ -314,8 +327,8 @@ static void test_all_problems(void **state)
 
 static void test_normals(void **state)
 {
-  static const double exact[][3] = {{0, 1, 0},    {90, 0, 1},   {180, -1, 0},  {270, 0, -1}, {-90, 0, -1},
-                                    {360, 1, 0},  {-450, 0, -1}, {1e6 * 90, 1, 0}};
+  static const double exact[][3] = {{0, 1, 0},    {90, 0, 1},  {180, -1, 0},  {270, 0, -1},
+                                    {-90, 0, -1}, {360, 1, 0}, {-450, 0, -1}, {1e6 * 90, 1, 0}};
 
   (void)state;
   for (size_t i = 0; i < sizeof exact / sizeof exact[0]; i++) {
@@ -355,8 +368,9 @@ static void test_validate(void **state)
 static void test_settings(void **state)
 {
   static const char *const good[] = {"frame", "event", "substep=1", "substep=1000000"};
-  static const char *const bad[] = {"", "Frame", "substep", "substep=", "substep=0", "substep=1000001", "substep=-1",
-                                    "substep=1.5", "events", "auto"};
+  static const char *const bad[] = {
+    "",           "Frame",       "substep", "substep=", "substep=0", "substep=1000001",
+    "substep=-1", "substep=1.5", "events",  "auto"};
   stic_settings s;
   char text[32];
 
@@ -377,10 +391,11 @@ static void test_settings(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_good_scene),      cmocka_unit_test(test_tolerated), cmocka_unit_test(test_wrong_scenes),
-    cmocka_unit_test(test_limits),          cmocka_unit_test(test_overrides), cmocka_unit_test(test_override_values),
-    cmocka_unit_test(test_all_problems),    cmocka_unit_test(test_normals),   cmocka_unit_test(test_validate),
-    cmocka_unit_test(test_settings),
+    cmocka_unit_test(test_good_scene),   cmocka_unit_test(test_tolerated),
+    cmocka_unit_test(test_wrong_scenes), cmocka_unit_test(test_limits),
+    cmocka_unit_test(test_overrides),    cmocka_unit_test(test_override_values),
+    cmocka_unit_test(test_all_problems), cmocka_unit_test(test_normals),
+    cmocka_unit_test(test_validate),     cmocka_unit_test(test_settings),
   };
 
   return cmocka_run_group_tests(tests, NULL, stic_test_clean_up);

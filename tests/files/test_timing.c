@@ -69,9 +69,11 @@ static void test_bounds(void **state)
 static void test_summary(void **state)
 {
   static const char *const parts[] = {
-    "\"frames\": 2,", "\"seconds\": 1.5,", "\"target_hz\": 31,", "\"missed\": 1,", "\"stages\": {", "\"read\": {",
-    "\"collide\": {", "\"solve\": {", "\"render\": {", "\"encode\": {", "\"write\": {", "\"frame\": {", "\"p50_ns\": ",
-    "\"p99_ns\": ", "\"p999_ns\": ", "\"max_ns\": 40000000", "\"wakeup\": {", "\"machine\": \"", "\"scheduling\": \"x\""};
+    "\"frames\": 2,", "\"seconds\": 1.5,", "\"target_hz\": 31,",   "\"missed\": 1,",
+    "\"stages\": {",  "\"read\": {",       "\"collide\": {",       "\"solve\": {",
+    "\"render\": {",  "\"encode\": {",     "\"write\": {",         "\"frame\": {",
+    "\"p50_ns\": ",   "\"p99_ns\": ",      "\"p999_ns\": ",        "\"max_ns\": 40000000",
+    "\"wakeup\": {",  "\"machine\": \"",   "\"scheduling\": \"x\""};
   stic_timing *timing = stic_timing_create();
   char *text;
 

@@ -89,9 +89,12 @@ static void test_wrong_traces(void **state)
 static void test_tolerated(void **state)
 {
   static const char *const good[] = {
-    FORMAT "0" GOOD, FORMAT HEADER "0" GOOD, "\xef\xbb\xbf" FORMAT "0" GOOD,
+    FORMAT "0" GOOD,
+    FORMAT HEADER "0" GOOD,
+    "\xef\xbb\xbf" FORMAT "0" GOOD,
     "# stiction-trace 1\r\nt,x,y,z,qx,qy,qz,qw,buttons\r\n0,0,0,0,0,0,0,1,0\r\n",
-    FORMAT "# a comment\n" HEADER "# another\n0" GOOD "# last\n", FORMAT "0, 0,\t0 ,0,0,0,0,1, 0\n",
+    FORMAT "# a comment\n" HEADER "# another\n0" GOOD "# last\n",
+    FORMAT "0, 0,\t0 ,0,0,0,0,1, 0\n",
     FORMAT "-1e-3,+.5,1.,1E2,0,0,0,-1.005,0\n"};
   stic_sample sample;
   stic_error err;
@@ -129,13 +132,16 @@ static void test_lenient(void **state)
   int count;
 
   (void)state;
-  assert_int_equal(read_all(stic_test_write("t.csv", FORMAT "0" GOOD "bad\n1" GOOD "0.5" GOOD "2" GOOD "3,0,0"),
-                            &options, &count, &sample, &err), STIC_TRACE_END);
+  assert_int_equal(
+    read_all(stic_test_write("t.csv", FORMAT "0" GOOD "bad\n1" GOOD "0.5" GOOD "2" GOOD "3,0,0"), &options,
+             &count, &sample, &err),
+    STIC_TRACE_END);
   assert_int_equal(count, 3);
   assert_int_equal(t.errors, 2);
   assert_int_equal(t.warnings, 1);
   assert_int_equal(t.first_line, 3);
-  assert_int_equal(read_all(stic_test_write("t.csv", "0" GOOD), &options, &count, &sample, &err), STIC_TRACE_BAD);
+  assert_int_equal(read_all(stic_test_write("t.csv", "0" GOOD), &options, &count, &sample, &err),
+                   STIC_TRACE_BAD);
 }
 
 /* 65536 bytes are a line, one more is not; what follows a line that is too long is read. */
@@ -179,22 +185,36 @@ static void test_times(void **state)
     stic_number_status status;
     int64_t ns;
   } times[] = {
-    {"0", STIC_NUMBER_OK, 0}, {"0.1", STIC_NUMBER_OK, 100000000}, {"-0.000000001", STIC_NUMBER_OK, -1},
+    {"0", STIC_NUMBER_OK, 0},
+    {"0.1", STIC_NUMBER_OK, 100000000},
+    {"-0.000000001", STIC_NUMBER_OK, -1},
     {"1234567890.123456789", STIC_NUMBER_OK, INT64_C(1234567890123456789)},
-    {"9223372036.854775807", STIC_NUMBER_OK, INT64_MAX}, {"9223372036.854775808", STIC_NUMBER_TOO_LARGE, 0},
-    {"1e-9", STIC_NUMBER_OK, 1}, {"5e-10", STIC_NUMBER_OK, 1}, {"4.9999e-10", STIC_NUMBER_OK, 0},
-    {"1e-400", STIC_NUMBER_OK, 0}, {"1e400", STIC_NUMBER_TOO_LARGE, 0}, {"0e400", STIC_NUMBER_OK, 0},
-    {"0.0000000000000000000000000000001", STIC_NUMBER_OK, 0}, {"1.0000000015", STIC_NUMBER_OK, 1000000002},
-    {"1.00000000149999999999999999999999", STIC_NUMBER_OK, 1000000001}, {"1e9999999999999999999", STIC_NUMBER_TOO_LARGE, 0},
-    {"", STIC_NUMBER_NOT_PLAIN, 0}, {".", STIC_NUMBER_NOT_PLAIN, 0}, {"1e", STIC_NUMBER_NOT_PLAIN, 0},
-    {"--1", STIC_NUMBER_NOT_PLAIN, 0}, {"1 ", STIC_NUMBER_NOT_PLAIN, 0}, {"01", STIC_NUMBER_NOT_PLAIN, 0},
+    {"9223372036.854775807", STIC_NUMBER_OK, INT64_MAX},
+    {"9223372036.854775808", STIC_NUMBER_TOO_LARGE, 0},
+    {"1e-9", STIC_NUMBER_OK, 1},
+    {"5e-10", STIC_NUMBER_OK, 1},
+    {"4.9999e-10", STIC_NUMBER_OK, 0},
+    {"1e-400", STIC_NUMBER_OK, 0},
+    {"1e400", STIC_NUMBER_TOO_LARGE, 0},
+    {"0e400", STIC_NUMBER_OK, 0},
+    {"0.0000000000000000000000000000001", STIC_NUMBER_OK, 0},
+    {"1.0000000015", STIC_NUMBER_OK, 1000000002},
+    {"1.00000000149999999999999999999999", STIC_NUMBER_OK, 1000000001},
+    {"1e9999999999999999999", STIC_NUMBER_TOO_LARGE, 0},
+    {"", STIC_NUMBER_NOT_PLAIN, 0},
+    {".", STIC_NUMBER_NOT_PLAIN, 0},
+    {"1e", STIC_NUMBER_NOT_PLAIN, 0},
+    {"--1", STIC_NUMBER_NOT_PLAIN, 0},
+    {"1 ", STIC_NUMBER_NOT_PLAIN, 0},
+    {"01", STIC_NUMBER_NOT_PLAIN, 0},
   };
 
   (void)state;
   for (size_t i = 0; i < sizeof times / sizeof times[0]; i++) {
     int64_t ns = 0;
 
-    if (stic_number_parse_ns(times[i].text, strlen(times[i].text), &ns) != times[i].status || ns != times[i].ns)
+    if (stic_number_parse_ns(times[i].text, strlen(times[i].text), &ns) != times[i].status ||
+        ns != times[i].ns)
       fail_msg("'%s' gave %lld", times[i].text, (long long)ns);
   }
 }
@@ -210,7 +230,8 @@ static void test_numbers(void **state)
     double expected, found = 0;
 
     random = random * UINT64_C(6364136223846793005) + 1442695040888963407u;
-    snprintf(text, sizeof text, "%s%.*f", i & 1 ? "-" : "", (int)(random >> 60), (double)(random >> 20) / 1e9);
+    snprintf(text, sizeof text, "%s%.*f", i & 1 ? "-" : "", (int)(random >> 60),
+             (double)(random >> 20) / 1e9);
     if (i % 3 == 0)
       snprintf(text, sizeof text, "%.17ge%d", (double)(random >> 11) * 1e-3, (int)(random % 600) - 330);
     if (strchr(text, 'e') != strrchr(text, 'e'))
@@ -260,7 +281,8 @@ static void test_recording(void **state)
     assert_int_equal(stic_trace_next(reader, &sample, &err), STIC_TRACE_SAMPLE);
     assert_memory_equal(sample.position, written[i].position, sizeof sample.position);
     assert_memory_equal(sample.orientation, written[i].orientation, sizeof sample.orientation);
-    assert_true(sample.t_ns == written[i].t_ns && sample.buttons == written[i].buttons && sample.lost == written[i].lost);
+    assert_true(sample.t_ns == written[i].t_ns && sample.buttons == written[i].buttons &&
+                sample.lost == written[i].lost);
   }
   assert_int_equal(stic_trace_next(reader, &sample, &err), STIC_TRACE_END);
   stic_trace_close(reader);

@@ -42,7 +42,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     bool given;
 
     do {
-      given = stic_logitech_stream_next(&stream, data + at + taken, length - taken, arrival_ns, &used, &sample);
+      given =
+        stic_logitech_stream_next(&stream, data + at + taken, length - taken, arrival_ns, &used, &sample);
       taken += used;
       require(taken <= length && (given || taken == length));
       if (given) {

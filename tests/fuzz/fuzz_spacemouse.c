@@ -28,7 +28,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const stic_spacemouse_report kind = stic_spacemouse_decode(&mouse, data + 1, length);
 
     check(&mouse);
-    if ((kind == STIC_SPACEMOUSE_BAD || kind == STIC_SPACEMOUSE_OTHER) && memcmp(&before, &mouse, sizeof mouse) != 0)
+    if ((kind == STIC_SPACEMOUSE_BAD || kind == STIC_SPACEMOUSE_OTHER) &&
+        memcmp(&before, &mouse, sizeof mouse) != 0)
       abort();
     data += 1 + length;
     size -= 1 + length;

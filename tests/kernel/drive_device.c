@@ -28,8 +28,8 @@ typedef struct watcher {
   const char *spec;
   stic_driver_kind kind;
   progress progress;
-  double grip_x;            /* where it was gripped, m */
-  bool any;                 /* `last` is a sample */
+  double grip_x; /* where it was gripped, m */
+  bool any;      /* `last` is a sample */
   stic_device_sample last;
   int losses, returns;
   bool bad;
@@ -116,8 +116,8 @@ static void watch(watcher *w, stic_supervisor *supervisor)
     for (int i = 0; i < count; i++)
       judge(w, &samples[i]);
     if (stic_clock_ns() > end_ns) {
-      fprintf(stderr, "%s: lost %d times, back %d times, gesture at %d of %d\n", w->spec, w->losses, w->returns,
-              (int)w->progress, (int)RELEASED);
+      fprintf(stderr, "%s: lost %d times, back %d times, gesture at %d of %d\n", w->spec, w->losses,
+              w->returns, (int)w->progress, (int)RELEASED);
       w->bad = true;
     }
   }
@@ -134,9 +134,9 @@ static int drive(const char *spec)
   w.kind = stic_supervisor_driver(supervisor)->kind;
   watch(&w, supervisor);
   counters = stic_supervisor_counters(supervisor);
-  printf("%s: samples %lld, bad %lld, gaps %lld, overruns %lld, reconnects %lld\n", spec, (long long)counters.samples,
-         (long long)counters.bad_records, (long long)counters.gaps, (long long)counters.overruns,
-         (long long)counters.reconnects);
+  printf("%s: samples %lld, bad %lld, gaps %lld, overruns %lld, reconnects %lld\n", spec,
+         (long long)counters.samples, (long long)counters.bad_records, (long long)counters.gaps,
+         (long long)counters.overruns, (long long)counters.reconnects);
   if (counters.reconnects != 1)
     complain(&w, "expected one reconnection");
   stic_supervisor_close(supervisor);

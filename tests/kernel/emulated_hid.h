@@ -33,13 +33,13 @@ typedef struct stic_emulated_device {
 struct stic_emulator {
   const stic_emulated_device *device;
   int files[STIC_INTERFACES_MAX];
-  int open_count;  /* by drivers, of all interfaces */
-  bool at_work;    /* a driver has set the device up: the gesture begins */
-  bool farewell;   /* ... and has left it as it was */
-  unsigned step;   /* reports made since it was plugged in */
-  bool told_grip;  /* what the last key report said */
-  int echoes;      /* reports of rest still to send */
-  int idle;        /* reports since the last driver closed it */
+  int open_count; /* by drivers, of all interfaces */
+  bool at_work;   /* a driver has set the device up: the gesture begins */
+  bool farewell;  /* ... and has left it as it was */
+  unsigned step;  /* reports made since it was plugged in */
+  bool told_grip; /* what the last key report said */
+  int echoes;     /* reports of rest still to send */
+  int idle;       /* reports since the last driver closed it */
   uint8_t sequence;
 };
 

@@ -86,24 +86,15 @@ static void take_event(stic_emulator *e, int file)
   if (read(file, &event, sizeof event) <= 0)
     return;
   switch (event.type) {
-  case UHID_OPEN:
-    e->open_count++;
-    break;
-  case UHID_CLOSE:
-    e->open_count--;
-    break;
+  case UHID_OPEN: e->open_count++; break;
+  case UHID_CLOSE: e->open_count--; break;
   case UHID_OUTPUT:
     if (e->device->output)
       e->device->output(e, event.u.output.data, event.u.output.size);
     break;
-  case UHID_SET_REPORT:
-    answer_set(e, file, &event);
-    break;
-  case UHID_GET_REPORT:
-    answer_get(e, file, &event);
-    break;
-  default:
-    break;
+  case UHID_SET_REPORT: answer_set(e, file, &event); break;
+  case UHID_GET_REPORT: answer_get(e, file, &event); break;
+  default: break;
   }
 }
 

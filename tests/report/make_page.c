@@ -42,7 +42,8 @@ static stic_status make_barcode(const char *path, int64_t frames, int fps, stic_
 {
   uint8_t *pixels = malloc((size_t)WIDTH * HEIGHT * 4);
   stic_video *video = NULL;
-  stic_status status = pixels ? stic_video_create(path, WIDTH, HEIGHT, fps, false, &video, err) : STIC_NO_MEMORY;
+  stic_status status =
+    pixels ? stic_video_create(path, WIDTH, HEIGHT, fps, false, &video, err) : STIC_NO_MEMORY;
 
   for (int64_t i = 0; i < frames && status == STIC_OK; i++) {
     const stic_image image = {WIDTH, HEIGHT, pixels};
@@ -99,7 +100,8 @@ static stic_status make(char **argv, stic_timing *timing, stic_error *err)
 {
   static stic_scene scene;
   stic_settings settings;
-  stic_report_settings page = {argv[1], &scene, &settings, argv[2], "trace", argv[3], "make_page", NULL, 0, 0};
+  stic_report_settings page = {argv[1], &scene,      &settings, argv[2], "trace",
+                               argv[3], "make_page", NULL,      0,       0};
   stic_report *report = NULL;
   const char *video = strcmp(argv[5], "none") == 0 ? NULL : argv[5];
   int64_t span = 0;

@@ -117,16 +117,19 @@ static void test_utf8(void **state)
   check_clean("plain \xc3\xa4 \xe2\x82\xac \xf0\x9f\x99\x82", "plain \xc3\xa4 \xe2\x82\xac \xf0\x9f\x99\x82");
   check_clean("\xff", "\xef\xbf\xbd");
   check_clean("a\xc3", "a\xef\xbf\xbd");
-  check_clean("\xc0\x80", "\xef\xbf\xbd\xef\xbf\xbd");                      /* too long a form */
-  check_clean("\xed\xa0\x80", "\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd");      /* half of a surrogate pair */
+  check_clean("\xc0\x80", "\xef\xbf\xbd\xef\xbf\xbd");                 /* too long a form */
+  check_clean("\xed\xa0\x80", "\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd"); /* half of a surrogate pair */
   check_clean("\xf4\x90\x80\x80", "\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd"); /* beyond U+10FFFF */
 }
 
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_steps_survive), cmocka_unit_test(test_many_steps),
-    cmocka_unit_test(test_gaps_and_short_curves), cmocka_unit_test(test_sha256), cmocka_unit_test(test_utf8),
+    cmocka_unit_test(test_steps_survive),
+    cmocka_unit_test(test_many_steps),
+    cmocka_unit_test(test_gaps_and_short_curves),
+    cmocka_unit_test(test_sha256),
+    cmocka_unit_test(test_utf8),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -23,7 +23,8 @@ static int fake_enumerate(void *context, stic_hid_node *nodes, int capacity)
   return count;
 }
 
-static stic_status fake_open(void *context, const stic_hid_node *node, stic_hid_handle **handle, stic_error *err)
+static stic_status fake_open(void *context, const stic_hid_node *node, stic_hid_handle **handle,
+                             stic_error *err)
 {
   stic_fake_hid *hid = context;
 

@@ -25,11 +25,11 @@ typedef struct stic_fake_report {
 
 typedef struct stic_fake_node {
   stic_hid_node node;
-  int usages;       /* how often it is listed, 0: not plugged in */
-  bool forbidden;   /* open() has no permission */
+  int usages;     /* how often it is listed, 0: not plugged in */
+  bool forbidden; /* open() has no permission */
   bool open;
-  bool gone;        /* pulled out while open */
-  int head, tail;   /* of the queue */
+  bool gone;      /* pulled out while open */
+  int head, tail; /* of the queue */
   stic_fake_report reports[FAKE_REPORTS];
 } stic_fake_node;
 

@@ -41,7 +41,8 @@ static void test_rest(void **state)
   assert_int_equal(decode(usb, sizeof usb, &pads[0]), STIC_GAMEPAD_OK);
   assert_int_equal(decode(bluetooth, sizeof bluetooth, &pads[1]), STIC_GAMEPAD_OK);
   for (int i = 0; i < 2; i++) {
-    assert_true(pads[i].left[0] == 0 && pads[i].left[1] == 0 && pads[i].right[0] == 0 && pads[i].right[1] == 0);
+    assert_true(pads[i].left[0] == 0 && pads[i].left[1] == 0 && pads[i].right[0] == 0 &&
+                pads[i].right[1] == 0);
     assert_true(pads[i].l2 == 0 && pads[i].r2 == 0 && pads[i].hat[0] == 0 && pads[i].hat[1] == 0);
     assert_int_equal(pads[i].buttons, 0);
     assert_int_equal(pads[i].sequence, 9);
@@ -72,11 +73,12 @@ static void test_buttons(void **state)
     int byte;
     uint8_t bit;
     uint32_t button;
-  } map[] = {{9, 0x02, STIC_GAMEPAD_R1},     {9, 0x01, STIC_GAMEPAD_L1},      {8, 0x10, STIC_GAMEPAD_SQUARE},
-             {8, 0x20, STIC_GAMEPAD_CROSS},  {8, 0x40, STIC_GAMEPAD_CIRCLE},  {8, 0x80, STIC_GAMEPAD_TRIANGLE},
-             {9, 0x04, STIC_GAMEPAD_L2},     {9, 0x08, STIC_GAMEPAD_R2},      {9, 0x10, STIC_GAMEPAD_CREATE},
-             {9, 0x20, STIC_GAMEPAD_OPTIONS}, {9, 0x40, STIC_GAMEPAD_L3},     {9, 0x80, STIC_GAMEPAD_R3},
-             {10, 0x01, STIC_GAMEPAD_PS},    {10, 0x02, STIC_GAMEPAD_TOUCHPAD}};
+  } map[] = {
+    {9, 0x02, STIC_GAMEPAD_R1},      {9, 0x01, STIC_GAMEPAD_L1},       {8, 0x10, STIC_GAMEPAD_SQUARE},
+    {8, 0x20, STIC_GAMEPAD_CROSS},   {8, 0x40, STIC_GAMEPAD_CIRCLE},   {8, 0x80, STIC_GAMEPAD_TRIANGLE},
+    {9, 0x04, STIC_GAMEPAD_L2},      {9, 0x08, STIC_GAMEPAD_R2},       {9, 0x10, STIC_GAMEPAD_CREATE},
+    {9, 0x20, STIC_GAMEPAD_OPTIONS}, {9, 0x40, STIC_GAMEPAD_L3},       {9, 0x80, STIC_GAMEPAD_R3},
+    {10, 0x01, STIC_GAMEPAD_PS},     {10, 0x02, STIC_GAMEPAD_TOUCHPAD}};
   uint32_t all = 0;
 
   (void)state;
@@ -96,7 +98,8 @@ static void test_buttons(void **state)
 
 static void test_hat(void **state)
 {
-  static const int expected[9][2] = {{0, 1}, {1, 1}, {1, 0}, {1, -1}, {0, -1}, {-1, -1}, {-1, 0}, {-1, 1}, {0, 0}};
+  static const int expected[9][2] = {{0, 1},   {1, 1},  {1, 0},  {1, -1}, {0, -1},
+                                     {-1, -1}, {-1, 0}, {-1, 1}, {0, 0}};
 
   (void)state;
   for (int hat = 0; hat < 16; hat++) {
@@ -120,7 +123,8 @@ static void test_cut(void **state)
   stic_make_pad_usb(usb, 0);
   stic_make_pad_bluetooth(bluetooth, 0);
   for (size_t length = 0; length < sizeof usb; length++)
-    assert_int_equal(decode(usb, length, &pad), length == 10 ? STIC_GAMEPAD_REDUCED : STIC_GAMEPAD_BAD_LENGTH);
+    assert_int_equal(decode(usb, length, &pad),
+                     length == 10 ? STIC_GAMEPAD_REDUCED : STIC_GAMEPAD_BAD_LENGTH);
   for (size_t length = 0; length < sizeof bluetooth; length++)
     assert_int_equal(decode(bluetooth, length, &pad), STIC_GAMEPAD_BAD_LENGTH);
 }
@@ -159,15 +163,16 @@ static void test_run(void **state)
   stic_fake_plug(&hid, 0, DUALSENSE);
   device = stic_fake_open(&hid, "gamepad:speed=0.5,turn=2");
   stic_device_describe(device, text, sizeof text);
-  assert_string_equal(text, "DualSense 054c:0ce6 at /dev/fake0 (fake), 0.5 m/s and 2 rad/s at full deflection");
+  assert_string_equal(text,
+                      "DualSense 054c:0ce6 at /dev/fake0 (fake), 0.5 m/s and 2 rad/s at full deflection");
   assert_int_equal(device->state, STIC_CONNECTION_SYNCING);
   stic_make_pad_usb(usb, 254);
   usb[1] = 255;
   usb[2] = 255; /* right and down */
   usb[3] = 255;
-  usb[4] = 0; /* right and up */
-  usb[6] = 255; /* R2: away */
-  usb[8] = 6; /* hat left */
+  usb[4] = 0;           /* right and up */
+  usb[6] = 255;         /* R2: away */
+  usb[8] = 6;           /* hat left */
   usb[9] = 0x02 | 0x08; /* R1, R2 */
   stic_fake_send(&hid, 0, STIC_MS, usb, sizeof usb);
   stic_make_pad_usb(usb, 255);
@@ -177,7 +182,8 @@ static void test_run(void **state)
   assert_int_equal(stic_fake_poll(&hid, device, 20 * STIC_MS, samples, 8), 1);
   assert_int_equal(device->state, STIC_CONNECTION_RUNNING);
   assert_int_equal(samples[0].flags, STIC_SAMPLE_VELOCITY);
-  assert_true(samples[0].velocity[0] == 0.5 && samples[0].velocity[1] == -0.5 && samples[0].velocity[2] == -0.5);
+  assert_true(samples[0].velocity[0] == 0.5 && samples[0].velocity[1] == -0.5 &&
+              samples[0].velocity[2] == -0.5);
   assert_true(samples[0].turn_rate[0] == 2 && samples[0].turn_rate[1] == -2 && samples[0].turn_rate[2] == 2);
   assert_int_equal(samples[0].buttons, STIC_GAMEPAD_R1 | STIC_GAMEPAD_R2);
   assert_int_equal(stic_fake_poll(&hid, device, 4 * STIC_MS, samples, 8), 1);
@@ -249,10 +255,11 @@ static void test_garbage_and_unplug(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_crc),       cmocka_unit_test(test_rest),      cmocka_unit_test(test_sticks),
-    cmocka_unit_test(test_buttons),   cmocka_unit_test(test_hat),       cmocka_unit_test(test_cut),
-    cmocka_unit_test(test_every_byte), cmocka_unit_test(test_run),      cmocka_unit_test(test_bluetooth),
-    cmocka_unit_test(test_garbage_and_unplug)};
+    cmocka_unit_test(test_crc),        cmocka_unit_test(test_rest),
+    cmocka_unit_test(test_sticks),     cmocka_unit_test(test_buttons),
+    cmocka_unit_test(test_hat),        cmocka_unit_test(test_cut),
+    cmocka_unit_test(test_every_byte), cmocka_unit_test(test_run),
+    cmocka_unit_test(test_bluetooth),  cmocka_unit_test(test_garbage_and_unplug)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

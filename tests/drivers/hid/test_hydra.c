@@ -166,11 +166,11 @@ static void test_first_hemisphere(void **state)
     double position[3];
     bool mirrored;
   } cases[] = {
-    {STIC_HYDRA_LEFT, {0.047, 0.052, -0.065}, true},  /* in the dock on the wrong side: the captured one */
+    {STIC_HYDRA_LEFT, {0.047, 0.052, -0.065}, true}, /* in the dock on the wrong side: the captured one */
     {STIC_HYDRA_RIGHT, {-0.042, 0.054, -0.068}, true},
     {STIC_HYDRA_LEFT, {-0.047, 0.01, -0.03}, false},
     {STIC_HYDRA_RIGHT, {0.047, 0.01, -0.03}, false},
-    {STIC_HYDRA_RIGHT, {-0.2, 0.1, 0.3}, false},      /* out of the dock: on the user's side */
+    {STIC_HYDRA_RIGHT, {-0.2, 0.1, 0.3}, false}, /* out of the dock: on the user's side */
     {STIC_HYDRA_RIGHT, {0.2, 0.1, -0.3}, true},
   };
 
@@ -443,25 +443,24 @@ static void test_unplug_at_every_moment(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_crc),
-    cmocka_unit_test(test_captured),
-    cmocka_unit_test(test_controls),
-    cmocka_unit_test(test_cut),
-    cmocka_unit_test(test_every_byte),
-    cmocka_unit_test(test_right_checksum_wrong_content),
-    cmocka_unit_test(test_command),
-    cmocka_unit_test(test_grip),
-    cmocka_unit_test(test_first_hemisphere),
-    cmocka_unit_test(test_path_stays_whole),
-    cmocka_unit_test(test_mode_times),
-    cmocka_unit_test(test_switch_and_run),
-    cmocka_unit_test(test_other_side_takes_command),
-    cmocka_unit_test(test_unknown_usages),
-    cmocka_unit_test(test_gives_up),
-    cmocka_unit_test(test_garbage_and_gaps),
-    cmocka_unit_test(test_stops_and_is_told_again),
-    cmocka_unit_test(test_unplug_at_every_moment)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_crc),
+                                     cmocka_unit_test(test_captured),
+                                     cmocka_unit_test(test_controls),
+                                     cmocka_unit_test(test_cut),
+                                     cmocka_unit_test(test_every_byte),
+                                     cmocka_unit_test(test_right_checksum_wrong_content),
+                                     cmocka_unit_test(test_command),
+                                     cmocka_unit_test(test_grip),
+                                     cmocka_unit_test(test_first_hemisphere),
+                                     cmocka_unit_test(test_path_stays_whole),
+                                     cmocka_unit_test(test_mode_times),
+                                     cmocka_unit_test(test_switch_and_run),
+                                     cmocka_unit_test(test_other_side_takes_command),
+                                     cmocka_unit_test(test_unknown_usages),
+                                     cmocka_unit_test(test_gives_up),
+                                     cmocka_unit_test(test_garbage_and_gaps),
+                                     cmocka_unit_test(test_stops_and_is_told_again),
+                                     cmocka_unit_test(test_unplug_at_every_moment)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

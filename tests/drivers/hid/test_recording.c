@@ -35,7 +35,8 @@ static int poll_all(stic_device *device, int64_t until_ns, stic_device_sample *s
 {
   int count = 0, result;
 
-  while (count < SAMPLES && (result = stic_device_poll(device, until_ns, samples + count, SAMPLES - count)) > 0)
+  while (count < SAMPLES &&
+         (result = stic_device_poll(device, until_ns, samples + count, SAMPLES - count)) > 0)
     count += result;
   return count;
 }
@@ -193,7 +194,8 @@ static void test_two_nodes(void **state)
   assert_int_equal(fclose(file), 0);
   assert_int_equal(stic_hid_recording_open(path, &recording, &err), STIC_OK);
   assert_int_equal(stic_spec_parse("hydra", &spec, &err), STIC_OK);
-  assert_int_equal(stic_hid_open_over(stic_hid_recording_transport(recording), &spec, &device, &err), STIC_OK);
+  assert_int_equal(stic_hid_open_over(stic_hid_recording_transport(recording), &spec, &device, &err),
+                   STIC_OK);
   assert_int_equal(poll_all(device, INT64_MAX, samples), 10);
   assert_int_equal(device->counters.bad_records, 0);
   stic_device_close(device);

@@ -119,8 +119,11 @@ static void test_cut(void **state)
   static const struct {
     const uint8_t *report;
     size_t length, needed;
-  } reports[] = {{push, sizeof push, 7},          {combined, sizeof combined, 7}, {turn_y_30, sizeof turn_y_30, 7},
-                 {press_1, sizeof press_1, 3},    {battery, sizeof battery, 3}};
+  } reports[] = {{push, sizeof push, 7},
+                 {combined, sizeof combined, 7},
+                 {turn_y_30, sizeof turn_y_30, 7},
+                 {press_1, sizeof press_1, 3},
+                 {battery, sizeof battery, 3}};
 
   (void)state;
   for (size_t i = 0; i < sizeof reports / sizeof reports[0]; i++) {
@@ -246,10 +249,10 @@ static void test_match(void **state)
 
   (void)state;
   assert_true(matches(0x046d, 0xc626, 1, 8));
-  assert_true(matches(0x046d, 0xc626, 0, 0));      /* usage unknown */
-  assert_false(matches(0x256f, 0xc652, 1, 2));     /* a receiver's mouse side */
-  assert_false(matches(0x046d, 0xc077, 1, 8));     /* a Logitech mouse */
-  assert_false(matches(0x256f, 0xc626, 1, 8));     /* the other vendor's number */
+  assert_true(matches(0x046d, 0xc626, 0, 0));  /* usage unknown */
+  assert_false(matches(0x256f, 0xc652, 1, 2)); /* a receiver's mouse side */
+  assert_false(matches(0x046d, 0xc077, 1, 8)); /* a Logitech mouse */
+  assert_false(matches(0x256f, 0xc626, 1, 8)); /* the other vendor's number */
   for (size_t i = 0; i < sizeof never / sizeof never[0]; i++)
     assert_false(matches(0x256f, never[i], 1, 8));
 }
@@ -272,7 +275,8 @@ static void test_run(void **state)
   assert_int_equal(hid.sent_count, 1); /* LED on */
   assert_memory_equal(hid.sent[0].data, "\x04\x01", 2);
   stic_device_describe(device, text, sizeof text);
-  assert_string_equal(text, "SpaceNavigator 046d:c626 at /dev/fake0 (fake), 0.5 m/s and 2 rad/s at full deflection");
+  assert_string_equal(
+    text, "SpaceNavigator 046d:c626 at /dev/fake0 (fake), 0.5 m/s and 2 rad/s at full deflection");
 
   assert_int_equal(stic_fake_poll(&hid, device, 20 * STIC_MS, samples, 8), 0);
   stic_fake_send(&hid, 0, 5 * STIC_MS, push, sizeof push);
@@ -375,9 +379,11 @@ static void test_drain(void **state)
   device = stic_fake_open(&hid, "spacemouse");
   for (int i = 0; i < 90; i++)
     stic_fake_send(&hid, 0, 0, push, sizeof push);
-  assert_int_equal(stic_fake_poll(&hid, device, STIC_MS, samples, 16), 16); /* no more than there is room for */
+  assert_int_equal(stic_fake_poll(&hid, device, STIC_MS, samples, 16),
+                   16); /* no more than there is room for */
   assert_int_equal(device->counters.overruns, 0);
-  assert_int_equal(stic_fake_poll(&hid, device, STIC_MS, samples, 100), 74); /* the rest at once, without waiting */
+  assert_int_equal(stic_fake_poll(&hid, device, STIC_MS, samples, 100),
+                   74); /* the rest at once, without waiting */
   assert_int_equal(samples[73].sequence, 89);
   assert_int_equal(device->counters.overruns, 1);
   stic_device_close(device);
@@ -385,7 +391,8 @@ static void test_drain(void **state)
 
 static void test_pro_grip(void **state)
 {
-  static const uint8_t key_1[] = {3, 0x00, 0x10, 0, 0}, menu[] = {3, 0x01, 0, 0, 0}, both[] = {3, 0x01, 0x10, 0, 0};
+  static const uint8_t key_1[] = {3, 0x00, 0x10, 0, 0}, menu[] = {3, 0x01, 0, 0, 0},
+                       both[] = {3, 0x01, 0x10, 0, 0};
   stic_fake_hid hid;
   stic_device_sample samples[8];
   stic_device *device;
@@ -407,13 +414,13 @@ static void test_pro_grip(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_split),    cmocka_unit_test(test_combined),
-    cmocka_unit_test(test_clamp),    cmocka_unit_test(test_keys),
-    cmocka_unit_test(test_battery),  cmocka_unit_test(test_cut),
+    cmocka_unit_test(test_split),      cmocka_unit_test(test_combined),
+    cmocka_unit_test(test_clamp),      cmocka_unit_test(test_keys),
+    cmocka_unit_test(test_battery),    cmocka_unit_test(test_cut),
     cmocka_unit_test(test_every_byte), cmocka_unit_test(test_padded),
-    cmocka_unit_test(test_models),   cmocka_unit_test(test_match),
-    cmocka_unit_test(test_run),      cmocka_unit_test(test_unplug_and_replug),
-    cmocka_unit_test(test_garbage),  cmocka_unit_test(test_drain),
+    cmocka_unit_test(test_models),     cmocka_unit_test(test_match),
+    cmocka_unit_test(test_run),        cmocka_unit_test(test_unplug_and_replug),
+    cmocka_unit_test(test_garbage),    cmocka_unit_test(test_drain),
     cmocka_unit_test(test_pro_grip)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);

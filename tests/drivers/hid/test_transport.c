@@ -51,7 +51,8 @@ static void test_choice(void **state)
   assert_true(hid.nodes[0].open);
   stic_device_close(device);
   /* No path that is not in the list ever reaches open(). */
-  stic_fake_open_fails(&hid, "spacemouse:path=/dev/null", STIC_NO_DEVICE, "no spacemouse found by fake at /dev/null");
+  stic_fake_open_fails(&hid, "spacemouse:path=/dev/null", STIC_NO_DEVICE,
+                       "no spacemouse found by fake at /dev/null");
   stic_fake_open_fails(&hid, "spacemouse:path=/dev/fake1", STIC_NO_DEVICE, "no spacemouse found");
   stic_fake_open_fails(&hid, "spacemouse:serial=SN9", STIC_NO_DEVICE, "with serial number SN9");
 }
@@ -156,8 +157,8 @@ static void test_sequence(void **state)
 static void test_usages(void **state)
 {
   /* a mouse with a nested collection, a long item, and a multi-axis controller with a 32-bit usage */
-  static const uint8_t two[] = {0x05, 0x01, 0x09, 0x02, 0xa1, 0x01, 0x09, 0x01, 0xa1, 0x00, 0xc0, 0xc0,
-                                0xfe, 0x02, 0x10, 0xa1, 0x01, 0x0b, 0x08, 0x00, 0x01, 0x00, 0xa1, 0x01, 0xc0};
+  static const uint8_t two[] = {0x05, 0x01, 0x09, 0x02, 0xa1, 0x01, 0x09, 0x01, 0xa1, 0x00, 0xc0, 0xc0, 0xfe,
+                                0x02, 0x10, 0xa1, 0x01, 0x0b, 0x08, 0x00, 0x01, 0x00, 0xa1, 0x01, 0xc0};
   stic_hid_usage usages[4];
 
   (void)state;
@@ -213,11 +214,13 @@ static void remove_nodes(const char *const *names, size_t count)
 
 static void test_sysfs(void **state)
 {
-  static const char cap[] = "DRIVER=hid-generic\nHID_ID=0003:0000046D:0000C626\nHID_NAME=3Dconnexion Space\xc3\xa9\n"
-                            "HID_PHYS=usb-1\nHID_UNIQ=SN1\n";
+  static const char cap[] =
+    "DRIVER=hid-generic\nHID_ID=0003:0000046D:0000C626\nHID_NAME=3Dconnexion Space\xc3\xa9\n"
+    "HID_PHYS=usb-1\nHID_UNIQ=SN1\n";
   static const char pad[] = "HID_ID=0005:0000054C:00000CE6\nHID_NAME=Pad\nHID_UNIQ=\n";
   static const uint8_t cap_descriptor[] = {0x05, 0x01, 0x09, 0x08, 0xa1, 0x01, 0xc0};
-  static const uint8_t pad_descriptor[] = {0x05, 0x01, 0x09, 0x05, 0xa1, 0x01, 0xc0, 0x09, 0x06, 0xa1, 0x01, 0xc0};
+  static const uint8_t pad_descriptor[] = {0x05, 0x01, 0x09, 0x05, 0xa1, 0x01,
+                                           0xc0, 0x09, 0x06, 0xa1, 0x01, 0xc0};
   stic_hid_node nodes[8];
 
   (void)state;
@@ -271,18 +274,17 @@ static void test_system_refuses_strange_paths(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_list_has_each_path_once),
-    cmocka_unit_test(test_choice),
-    cmocka_unit_test(test_wrong_keys),
-    cmocka_unit_test(test_no_permission),
-    cmocka_unit_test(test_node_opens_once),
-    cmocka_unit_test(test_half_open),
-    cmocka_unit_test(test_signal_ends_wait),
-    cmocka_unit_test(test_sequence),
-    cmocka_unit_test(test_usages),
-    cmocka_unit_test(test_sysfs),
-    cmocka_unit_test(test_system_refuses_strange_paths)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_list_has_each_path_once),
+                                     cmocka_unit_test(test_choice),
+                                     cmocka_unit_test(test_wrong_keys),
+                                     cmocka_unit_test(test_no_permission),
+                                     cmocka_unit_test(test_node_opens_once),
+                                     cmocka_unit_test(test_half_open),
+                                     cmocka_unit_test(test_signal_ends_wait),
+                                     cmocka_unit_test(test_sequence),
+                                     cmocka_unit_test(test_usages),
+                                     cmocka_unit_test(test_sysfs),
+                                     cmocka_unit_test(test_system_refuses_strange_paths)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
