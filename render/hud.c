@@ -181,7 +181,7 @@ static const char *state_words(stic_state state)
   switch (state) {
   case STIC_RELEASED: return "Released";
   case STIC_FREE: return "Free";
-  case STIC_VERTEX: return "One corner";
+  case STIC_VERTEX: return "One vertex";
   case STIC_EDGE: return "Edge";
   case STIC_TWO_VERTEX: return "Two vertices";
   case STIC_CORNER: return "In the corner";

@@ -22,7 +22,7 @@ typedef struct video_kind {
 } video_kind;
 
 static const video_kind kinds[] = {
-  {".mp4", "mp4", "libx264", AV_PIX_FMT_YUV420P, "preset=veryfast:crf=20", "preset=ultrafast:crf=20"},
+  {".mp4", "mp4", "libx264", AV_PIX_FMT_YUV420P, "preset=veryfast:crf=20:rc-lookahead=10:aq-mode=1", "preset=ultrafast:crf=20"},
   {".mkv", "matroska", "libx264rgb", AV_PIX_FMT_BGR0, "preset=ultrafast:qp=0", "preset=ultrafast:qp=0"},
   {".webm", "webm", "libvpx-vp9", AV_PIX_FMT_YUV420P, "deadline=realtime:cpu-used=8:crf=32",
    "deadline=realtime:cpu-used=8:crf=32"}};
@@ -124,7 +124,7 @@ static stic_status open_scaler(stic_video_writer *v, stic_error *err)
   int code;
 
   v->scaler = sws_getContext(c->width, c->height, AV_PIX_FMT_RGB0, c->width, c->height, c->pix_fmt,
-                             SWS_BICUBIC, NULL, NULL, NULL);
+                             SWS_FAST_BILINEAR, NULL, NULL, NULL);
   v->packet = av_packet_alloc();
   v->frame = av_frame_alloc();
   if (!v->scaler || !v->packet || !v->frame)
