@@ -6,8 +6,8 @@
 #include <sys/stat.h>
 
 #include "../../src/error.h"
+#include "../../src/io/sha256.h"
 #include "report_data.h"
-#include "sha256.h"
 
 static json_t *text_json(const char *text)
 {

@@ -12,7 +12,7 @@
 
 #include "decimate.h"
 #include "page.h"
-#include "sha256.h"
+#include "../../src/io/sha256.h"
 
 #define COUNT 100000
 

@@ -705,7 +705,7 @@ static void check_sha256(check *c)
   char text[STIC_SHA256_TEXT];
   stic_sha256 hash;
 
-  stic_sha256_start(&hash);
+  stic_sha256_begin(&hash);
   stic_sha256_add(&hash, "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq", 56);
   stic_sha256_end(&hash, text);
   EXPECT(c, strcmp(text, "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1") == 0,

@@ -67,7 +67,7 @@ stic_status stic_golden_replay(const stic_scene *scene, const stic_settings *set
 
   if (status != STIC_OK)
     return status;
-  stic_sha256_start(&sum);
+  stic_sha256_begin(&sum);
   stic_sha256_add(&sum, STIC_LOG_HEADER "\n", strlen(STIC_LOG_HEADER) + 1);
   for (size_t i = 0; i < trace->count; i++) {
     stic_sim_step(sim, &trace->samples[i], &row);
@@ -92,7 +92,7 @@ static void hash_arithmetic(char text[STIC_SHA256_TEXT])
   uint32_t random = 1;
   stic_sha256 sum;
 
-  stic_sha256_start(&sum);
+  stic_sha256_begin(&sum);
   stic_sha256_add(&sum, &evaluation, 1);
   for (int i = 0; i < 4096; i++) {
     double a, b, values[5];

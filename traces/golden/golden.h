@@ -3,7 +3,7 @@
 #define STIC_GOLDEN_H
 
 #include "../../src/stiction.h"
-#include "sha256.h"
+#include "../../src/io/sha256.h"
 
 #define STIC_GOLDEN_LINE 160
 
