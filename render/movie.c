@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "clock.h"
 #include "error.h"
 #include "png_writer.h"
 #include "video.h"
@@ -49,14 +49,6 @@ static stic_status check(const stic_movie_settings *s, stic_error *err)
     return stic_error_set(err, STIC_USAGE, NULL, 0, "%d threads for pictures; expected 1 to %d", s->workers,
                           STIC_PNG_WORKERS_MAX);
   return stic_render_settings_validate(&s->render, err);
-}
-
-static int64_t wall_ns(void)
-{
-  struct timespec t;
-
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (int64_t)t.tv_sec * NS_PER_S + t.tv_nsec;
 }
 
 /* ---- folder -------------------------------------------------------------------------------- */
@@ -201,17 +193,17 @@ stic_status stic_movie_open(const stic_movie_settings *s, const stic_scene *scen
 static void tell_time(const stic_movie *m, stic_movie_stage stage, int64_t since)
 {
   if (m->timed)
-    m->timed(m->user, stage, wall_ns() - since);
+    m->timed(m->user, stage, stic_clock_ns() - since);
 }
 
 static stic_status draw_one(stic_movie *m, stic_error *err)
 {
-  int64_t start = wall_ns();
+  int64_t start = stic_clock_ns();
   stic_image image;
   stic_status status = stic_render_draw(m->render, &image, err);
 
   tell_time(m, STIC_MOVIE_RENDER, start);
-  start = wall_ns();
+  start = stic_clock_ns();
   if (!status && m->writer)
     status = stic_png_writer_add(m->writer, m->count, &image, err);
   if (!status && m->video)

@@ -1,11 +1,12 @@
 #include "collide.h"
 
+#include "clock.h"
+
 #include <assert.h>
 #include <math.h>
 #include <ode/ode.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 struct stic_collider {
   dGeomID object;                      /* the polygon, extruded along z */
@@ -101,13 +102,6 @@ void stic_collider_destroy(stic_collider *c)
   free(c);
 }
 
-static int64_t now_ns(void)
-{
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
-}
-
 /* Which vertex of the prism ODE's contact point is; it is one of them, up to its own rounding. */
 static int nearest_vertex(const stic_collider *c, const dReal *point, double cosine, double sine)
 {
@@ -149,7 +143,7 @@ static uint64_t near_vertices(stic_collider *c, int s, double gap, double cosine
 int stic_collide_near(stic_collider *c, const double *gaps, double cosine, double sine, double reach,
                       uint64_t *masks)
 {
-  int64_t start = c->clock_on ? now_ns() : 0;
+  int64_t start = c->clock_on ? stic_clock_ns() : 0;
   const dMatrix3 rotation = {cosine, -sine, 0, 0, sine, cosine, 0, 0, 0, 0, 1, 0};
   dGeomSetRotation(c->object, rotation);
   double widened = reach / c->unit * (1 + 1e-7) + 1e-7;
@@ -161,7 +155,7 @@ int stic_collide_near(stic_collider *c, const double *gaps, double cosine, doubl
     found += masks[s] != 0;
   }
   if (c->clock_on)
-    c->elapsed_ns += now_ns() - start;
+    c->elapsed_ns += stic_clock_ns() - start;
   return found;
 }
 

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "clock.h"
 #include "error.h"
 #include "statics/core.h"
 
@@ -82,13 +82,6 @@ void stic_sim_destroy(stic_sim *sim)
   free(sim->events);
   free(sim->state);
   free(sim);
-}
-
-static int64_t now_ns(void)
-{
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
 }
 
 /* 2 atan2(qz, qw), unwrapped to the turn nearest to the last angle; a rotation by pi about an axis in the
@@ -183,7 +176,7 @@ void stic_sim_step(stic_sim *sim, const stic_sample *sample, stic_result *result
 {
   assert(sim && sample && result);
   assert(!sim->started || sample->t_ns > sim->t_ns);
-  int64_t start = sim->timed ? now_ns() : 0;
+  int64_t start = sim->timed ? stic_clock_ns() : 0;
   sim->core->clear_events(sim->state);
   memset(&sim->report, 0, sizeof sim->report);
   sim->hand_angle = hand_angle(sim, sample->orientation);
@@ -215,7 +208,7 @@ void stic_sim_step(stic_sim *sim, const stic_sample *sample, stic_result *result
   sim->core->result(sim->state, target, sim->held, result);
   if (sim->timed) {
     sim->collide_ns = stic_collider_take_ns(sim->collider);
-    sim->total_ns = now_ns() - start;
+    sim->total_ns = stic_clock_ns() - start;
   }
 }
 

@@ -15,14 +15,6 @@
 
 #define NS_PER_S 1000000000
 
-int64_t stic_clock_ns(void)
-{
-  struct timespec now;
-
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (int64_t)now.tv_sec * NS_PER_S + now.tv_nsec;
-}
-
 bool stic_clock_sleep_until(int64_t t_ns)
 {
   struct timespec until;

@@ -2,10 +2,9 @@
 #ifndef STIC_TIMING_H
 #define STIC_TIMING_H
 
+#include "../clock.h"
 #include "../stiction.h"
 
-/* Now, CLOCK_MONOTONIC. Real-time: yes. */
-int64_t stic_clock_ns(void);
 /* Sleeps until that time. False if a signal came first. Real-time: yes. */
 bool stic_clock_sleep_until(int64_t t_ns);
 
