@@ -207,44 +207,16 @@ static real dot3(const real *a, const real *b)
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Solves the n x n system (n <= 6) in place by elimination with pivoting; false if singular. */
-static bool solve_small(int n, real m[6][7])
-{
-  for (int k = 0; k < n; k++) {
-    int pivot = k;
-    for (int i = k + 1; i < n; i++)
-      if (r_abs(m[i][k]) > r_abs(m[pivot][k]))
-        pivot = i;
-    if (r_abs(m[pivot][k]) <= 64 * REAL_EPSILON)
-      return false;
-    for (int j = k; j <= n; j++) {
-      real swap = m[k][j];
-      m[k][j] = m[pivot][j];
-      m[pivot][j] = swap;
-    }
-    for (int i = 0; i < n; i++) {
-      if (i == k)
-        continue;
-      real factor = m[i][k] / m[k][k];
-      for (int j = k; j <= n; j++)
-        m[i][j] -= factor * m[k][j];
-    }
-  }
-  for (int k = 0; k < n; k++)
-    m[k][n] /= m[k][k];
-  return true;
-}
-
 /* Least squares over the passive columns: weights that come nearest to the target. */
 static bool fit_columns(const generators *g, const int *passive, int n, const real target[3], real *weights)
 {
-  real m[6][7];
+  real m[3][4]; /* at most as many columns as the space has dimensions */
   for (int i = 0; i < n; i++) {
     for (int k = 0; k < n; k++)
       m[i][k] = dot3(g->column[passive[i]], g->column[passive[k]]);
     m[i][n] = dot3(g->column[passive[i]], target);
   }
-  if (!solve_small(n, m))
+  if (!solve_linear(n, 4, m[0], 64 * REAL_EPSILON))
     return false;
   for (int i = 0; i < n; i++)
     weights[i] = m[i][n];
@@ -276,7 +248,7 @@ static real nearest_in_cone(const generators *g, const real target[3], real *wei
     if (best < 0 || n == 3)
       break;
     passive[n++] = best;
-    real trial[4];
+    real trial[4] = {0};
     while (n > 0) {
       if (!fit_columns(g, passive, n, target, trial)) {
         n--; /* the new column depends on the others: it can give nothing */

@@ -120,6 +120,23 @@ static bool curve_first_zero(const curve *g, real x_max, real *x_out, int *itera
   return false;
 }
 
+/* The same functions counted from x on. */
+static wave wave_shift(const wave *w, real x)
+{
+  real c = r_cos(x), s = r_sin(x);
+  wave r = {w->k, w->c * c + w->s * s, w->s * c - w->c * s};
+  return r;
+}
+
+static curve curve_shift(const curve *g, real x)
+{
+  real c = r_cos(x), s = r_sin(x), c_2 = c * c - s * s, s_2 = 2 * s * c;
+  curve r = {g->k0 + g->k1 * x,         g->k1,
+             g->c1 * c + g->s1 * s,     g->s1 * c - g->c1 * s,
+             g->c2 * c_2 + g->s2 * s_2, g->s2 * c_2 - g->c2 * s_2};
+  return r;
+}
+
 /* First s in [0, 1] at which  drift s + w(turn s)  falls through zero: a vertex of an object that turns
  * while it moves straight. Any number of turns: outside the one turn in which the vertex's circle can
  * first reach the surface nothing can happen. */
@@ -151,8 +168,7 @@ static real drift_first_down(wave w, real turn, real drift, real noise, int *ite
     x_begin = clear;
   }
   /* Shift the origin of x to x_begin. */
-  real c = r_cos(x_begin), s = r_sin(x_begin);
-  curve shifted = {g.k0 + g.k1 * x_begin, g.k1, g.c1 * c + g.s1 * s, g.s1 * c - g.c1 * s, 0, 0};
+  curve shifted = curve_shift(&g, x_begin);
   if (shifted.k0 + shifted.c1 <= 0)
     return x_begin / turn;
   real x;

@@ -46,32 +46,6 @@ static vec flow_direction(const flow *f, int i)
   return v_mix(s->n, f->modes[i] == FLOW_FORWARD ? -s->mu_d : s->mu_d, s->t);
 }
 
-/* Gauss-Jordan with pivoting; false if singular. */
-static bool solve_flow(int n, real m[FLOW_UNKNOWNS][FLOW_UNKNOWNS + 1])
-{
-  for (int k = 0; k < n; k++) {
-    int pivot = k;
-    for (int i = k + 1; i < n; i++)
-      if (r_abs(m[i][k]) > r_abs(m[pivot][k]))
-        pivot = i;
-    if (r_abs(m[pivot][k]) <= 1024 * REAL_EPSILON)
-      return false;
-    for (int j = 0; j <= n; j++) {
-      real swap = m[k][j];
-      m[k][j] = m[pivot][j];
-      m[pivot][j] = swap;
-    }
-    for (int i = 0; i < n; i++) {
-      real factor = i == k ? 0 : m[i][k] / m[k][k];
-      for (int j = k; factor != 0 && j <= n; j++)
-        m[i][j] -= factor * m[k][j];
-    }
-  }
-  for (int k = 0; k < n; k++)
-    m[k][n] /= m[k][k];
-  return true;
-}
-
 /* Velocities and contact forces at the present pose, from the mobility of the flow and the contacts'
  * constraints: unknowns are dg/ds, dtheta/ds and one or two force components per closed contact. */
 static bool flow_solve(const flow *f, flow_rates *r)
@@ -106,7 +80,7 @@ static bool flow_solve(const flow *f, flow_rates *r)
   m[0][n] = force.x;
   m[1][n] = force.y;
   m[2][n] = spring_moment(c);
-  if (!solve_flow(n, m))
+  if (!solve_linear(n, FLOW_UNKNOWNS + 1, m[0], 1024 * REAL_EPSILON))
     return false;
   r->g = v_make(m[0][n], m[1][n]);
   r->theta = m[2][n];

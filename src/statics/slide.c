@@ -171,22 +171,6 @@ typedef struct trammel {
   wave speed_first, speed_second; /* of the contacts along their tangents, per angle turned */
 } trammel;
 
-static wave wave_shift(const wave *w, real x)
-{
-  real c = r_cos(x), s = r_sin(x);
-  wave r = {w->k, w->c * c + w->s * s, w->s * c - w->c * s};
-  return r;
-}
-
-static curve curve_shift(const curve *g, real x)
-{
-  real c = r_cos(x), s = r_sin(x), c_2 = c * c - s * s, s_2 = 2 * s * c;
-  curve r = {g->k0 + g->k1 * x,         g->k1,
-             g->c1 * c + g->s1 * s,     g->s1 * c - g->c1 * s,
-             g->c2 * c_2 + g->s2 * s_2, g->s2 * c_2 - g->c2 * s_2};
-  return r;
-}
-
 static trammel trammel_path(const core *c, int first, int second, real dir)
 {
   const contact *i = &c->contacts[first], *k = &c->contacts[second];

@@ -6,6 +6,7 @@
 
 #include "spring.c"
 #include "curve.c"
+#include "linear.c"
 #include "touch.c"
 #include "path.c"
 #include "cone.c"

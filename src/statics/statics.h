@@ -162,6 +162,9 @@ static real curve_at(const curve *g, real x);
 static bool curve_first_zero(const curve *g, real x_max, real *x, int *iterations);
 static real drift_first_down(wave w, real turn, real drift, real noise, int *iterations);
 
+/* ---- linear.c ---- */
+static bool solve_linear(int n, int width, real *m, real smallest);
+
 /* ---- touch.c: which vertex reaches which surface first [5] ---- */
 typedef struct touch {
   real at; /* R_HUGE: none */
