@@ -152,3 +152,16 @@ stic_status stic_spec_number(const stic_device_spec *spec, const char *key, doub
   *value = v;
   return STIC_OK;
 }
+
+const char *stic_spec_quote(const char *value, char *out, size_t out_size)
+{
+  size_t used = 0;
+
+  for (; *value && used + 3 <= out_size; value++) {
+    if (*value == ',' || *value == '\\')
+      out[used++] = '\\';
+    out[used++] = *value;
+  }
+  out[used] = '\0';
+  return out;
+}

@@ -30,6 +30,9 @@ typedef struct stic_device_spec {
 /* Takes a specification apart; "\," and "\\" in values stand for "," and "\". STIC_USAGE. */
 stic_status stic_spec_parse(const char *text, stic_device_spec *spec, stic_error *err);
 
+/* `value` as it must stand in a specification: with "\\" before "," and "\\". Cut where `out` is full; returns out. */
+const char *stic_spec_quote(const char *value, char *out, size_t out_size);
+
 /* Refuses unknown and repeated keys, missing and needless values. `keys` is ended by a NULL name. */
 stic_status stic_spec_check(const stic_device_spec *spec, const stic_spec_key *keys, stic_error *err);
 

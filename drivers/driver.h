@@ -86,8 +86,8 @@ typedef struct stic_device_id {
   const char *bus;          /* "usb", "bluetooth", "serial" */
   uint16_t vendor, product; /* 0 where there are none */
   uint16_t usage_page, usage;
-  const char *path; /* to open it with, e.g. "/dev/hidraw3" */
-  const char *product_name;
+  const char *path;         /* to open it with, e.g. "/dev/hidraw3" */
+  const char *product_name; /* what it calls itself; "" or NULL if it does not */
 } stic_device_id;
 
 /* What goes to a device; fields that it lacks are ignored. */
@@ -114,7 +114,8 @@ struct stic_driver {
   int64_t silence_ns; /* how long a silence means that; 0: never */
   bool own_time;      /* source_ns, not the time of arrival, is the samples' time */
 
-  /* Whether this driver is for the device. No I/O: ids and names only. NULL: opened by name alone. */
+  /* Whether this driver is for the device, as far as ids and names tell: a serial port may be for any serial
+   * tracker. No I/O. NULL: no device of the system's, opened by name alone. */
   bool (*match)(const stic_device_id *id);
 
   /* Opens a device; `spec` has been checked against `keys`. The caller owns `*device` until close().

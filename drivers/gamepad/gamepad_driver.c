@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define SONY 0x054c
 #define DUALSENSE 0x0ce6
@@ -25,9 +26,18 @@ typedef struct gamepad_device {
   bool asked;
 } gamepad_device;
 
+/* By its numbers or, where they are none of these, by what it calls itself: adapters hide numbers. */
+static bool is_dualsense(const stic_device_id *id)
+{
+  if (id->vendor == SONY && (id->product == DUALSENSE || id->product == DUALSENSE_EDGE))
+    return true;
+  return (id->vendor == SONY || (id->vendor == 0 && id->product == 0)) && id->product_name &&
+         strstr(id->product_name, "DualSense");
+}
+
 static bool gamepad_match(const stic_device_id *id)
 {
-  return id->vendor == SONY && (id->product == DUALSENSE || id->product == DUALSENSE_EDGE) &&
+  return is_dualsense(id) &&
          ((id->usage_page == 0x01 && id->usage == GAMEPAD) || (id->usage_page == 0 && id->usage == 0));
 }
 

@@ -30,6 +30,8 @@ typedef struct hydra_device {
 
 static bool hydra_match(const stic_device_id *id)
 {
+  if (id->vendor == 0 && id->product == 0) /* an adapter that hides them */
+    return id->product_name && strstr(id->product_name, "Razer Hydra");
   return id->vendor == VENDOR && id->product == PRODUCT;
 }
 

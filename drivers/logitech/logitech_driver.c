@@ -24,6 +24,12 @@ typedef struct logitech_device {
   uint8_t input[INPUT_ROOM];
 } logitech_device;
 
+/* A serial port does not say what is behind it. */
+static bool logitech_match(const stic_device_id *id)
+{
+  return strcmp(id->bus, "serial") == 0;
+}
+
 static bool port_write(void *context, const uint8_t *bytes, size_t length)
 {
   return stic_tty_write(context, bytes, length);
@@ -198,7 +204,7 @@ const stic_driver stic_logitech_driver = {
   .silence = STIC_SILENCE_STALE,
   .silence_ns = 3 * (int64_t)STIC_LOGITECH_PERIOD_NS,
   .own_time = false,
-  .match = NULL, /* a serial port does not say what is behind it */
+  .match = logitech_match,
   .open = logitech_open,
   .poll = logitech_poll,
   .send = NULL,

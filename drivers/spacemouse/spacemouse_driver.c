@@ -21,13 +21,17 @@ typedef struct spacemouse_device {
   uint64_t sequence;
 } spacemouse_device;
 
+static const stic_spacemouse_model *model_of(const stic_hid_node *node)
+{
+  return stic_spacemouse_identify(node->vendor, node->product, node->product_name);
+}
+
 static bool spacemouse_match(const stic_device_id *id)
 {
   const bool cap = (id->usage_page == 0x01 && id->usage == MULTI_AXIS_CONTROLLER) ||
                    (id->usage_page == 0 && id->usage == 0); /* the libusb backend does not tell */
 
-  return cap && !stic_spacemouse_never(id->vendor, id->product) &&
-         stic_spacemouse_find(id->vendor, id->product);
+  return cap && stic_spacemouse_identify(id->vendor, id->product, id->product_name);
 }
 
 /* ---- samples ----------------------------------------------------------------------------- */
@@ -119,7 +123,7 @@ stic_status stic_spacemouse_open(const stic_hid_transport *transport, const stic
     free(d);
     return status;
   }
-  d->grip_key = stic_spacemouse_find(d->link.node.vendor, d->link.node.product)->grip_key;
+  d->grip_key = model_of(&d->link.node)->grip_key;
   d->base.state = STIC_CONNECTION_RUNNING;
   set_led(d, true); /* some models have none, so a refusal means nothing */
   *device = &d->base;
@@ -134,10 +138,9 @@ static stic_status open_system(const stic_device_spec *spec, stic_device **devic
 static void spacemouse_describe(const stic_device *device, char *out, size_t out_size)
 {
   const spacemouse_device *d = (const spacemouse_device *)device;
-  const stic_hid_node *node = &d->link.node;
   char where[STIC_HID_PATH_MAX + 100], battery[32] = "";
 
-  stic_hid_describe(&d->link, stic_spacemouse_find(node->vendor, node->product)->name, where, sizeof where);
+  stic_hid_describe(&d->link, model_of(&d->link.node)->name, where, sizeof where);
   if (d->mouse.battery >= 0)
     snprintf(battery, sizeof battery, ", battery %d %%", d->mouse.battery);
   snprintf(out, out_size, "%s, %g m/s and %g rad/s at full deflection%s", where, d->rates.speed,

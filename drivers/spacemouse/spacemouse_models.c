@@ -1,6 +1,7 @@
 #include "spacemouse_models.h"
 
 #include <stddef.h>
+#include <string.h>
 
 #define LOGITECH 0x046d /* the maker's parent, whose number the older models carry */
 #define THREEDCONNEXION 0x256f
@@ -29,6 +30,18 @@ static const stic_spacemouse_model models[] = {
 
 #define MODEL_COUNT ((int)(sizeof models / sizeof models[0]))
 
+/* By a part of the name; the first that fits, so that the more telling ones come first. */
+static const stic_spacemouse_model families[] = {
+  {0, 0, "SpaceMouse Pro", STIC_SPACEMOUSE_COMBINED, PRO_KEY_1},
+  {0, 0, "SpaceMouse Enterprise", STIC_SPACEMOUSE_COMBINED, PRO_KEY_1},
+  {0, 0, "SpacePilot Pro", STIC_SPACEMOUSE_SPLIT, PRO_KEY_1},
+  {0, 0, "SpaceMouse", STIC_SPACEMOUSE_COMBINED, 0},
+  {0, 0, "SpaceNavigator", STIC_SPACEMOUSE_SPLIT, 0},
+  {0, 0, "SpaceExplorer", STIC_SPACEMOUSE_SPLIT, 0},
+  {0, 0, "SpacePilot", STIC_SPACEMOUSE_SPLIT, 0},
+  {0, 0, "SpaceTraveler", STIC_SPACEMOUSE_SPLIT, 0},
+};
+
 /* CadMouse, keyboards, numeric pads, receivers of these; c641 is said to be one of them. */
 static const uint16_t never[] = {0xc62c, 0xc641, 0xc650, 0xc651, 0xc654, 0xc655,
                                  0xc656, 0xc657, 0xc658, 0xc664, 0xc665, 0xc668};
@@ -43,6 +56,24 @@ const stic_spacemouse_model *stic_spacemouse_find(uint16_t vendor, uint16_t prod
   for (int i = 0; i < MODEL_COUNT; i++) {
     if (models[i].vendor == vendor && models[i].product == product)
       return &models[i];
+  }
+  return NULL;
+}
+
+static bool may_go_by_name(uint16_t vendor, uint16_t product)
+{
+  return vendor == THREEDCONNEXION ? !stic_spacemouse_never(vendor, product) : vendor == 0 && product == 0;
+}
+
+const stic_spacemouse_model *stic_spacemouse_identify(uint16_t vendor, uint16_t product, const char *name)
+{
+  const stic_spacemouse_model *model = stic_spacemouse_find(vendor, product);
+
+  if (model || !name || !may_go_by_name(vendor, product))
+    return model;
+  for (size_t i = 0; i < sizeof families / sizeof families[0]; i++) {
+    if (strstr(name, families[i].name))
+      return &families[i];
   }
   return NULL;
 }

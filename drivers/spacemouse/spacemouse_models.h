@@ -24,6 +24,10 @@ const stic_spacemouse_model *stic_spacemouse_model_at(int index);
 /* The model with these numbers; NULL: none of ours. Real-time: yes. */
 const stic_spacemouse_model *stic_spacemouse_find(uint16_t vendor, uint16_t product);
 
+/* The model of a device: by its numbers or, where they are none of the table's, by what it calls itself, since
+ * adapters hide numbers and new models have new ones. `name` may be NULL. NULL: none of ours. Real-time: yes. */
+const stic_spacemouse_model *stic_spacemouse_identify(uint16_t vendor, uint16_t product, const char *name);
+
 /* Products of the same maker that are mice and keyboards without a cap, to be left alone. Real-time: yes. */
 bool stic_spacemouse_never(uint16_t vendor, uint16_t product);
 
