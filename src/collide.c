@@ -9,6 +9,7 @@
 #include <string.h>
 
 struct stic_collider {
+  bool by_ode;
   dGeomID object;                      /* the polygon, extruded along z */
   dGeomID surfaces[STIC_SURFACES_MAX]; /* one plane each, moved out by the reach at every query */
   double normals[STIC_SURFACES_MAX][2];
@@ -61,29 +62,33 @@ static void extrude(stic_collider *c, const stic_scene *scene)
   }
 }
 
-stic_collider *stic_collider_create(const stic_scene *scene, double unit)
+static bool make_geoms(stic_collider *c)
+{
+  unsigned n = (unsigned)c->vertex_count;
+  c->object = dCreateConvex(0, c->planes, n + 2, c->points, 2 * n, c->polygons);
+  bool good = c->object != NULL;
+  for (int s = 0; good && s < c->surface_count; s++) {
+    c->surfaces[s] = dCreatePlane(0, c->normals[s][0], c->normals[s][1], 0, 0);
+    good = c->surfaces[s] != NULL;
+  }
+  return good;
+}
+
+stic_collider *stic_collider_create(const stic_scene *scene, double unit, const int *surfaces, int count,
+                                    bool by_ode)
 {
   stic_collider *c = calloc(1, sizeof *c);
   if (!c)
     return NULL;
   c->unit = unit;
   c->vertex_count = scene->vertex_count;
+  c->surface_count = count;
+  for (int s = 0; s < count; s++)
+    stic_normal_from_degrees(scene->surfaces[surfaces[s]].normal_deg, c->normals[s]);
   extrude(c, scene);
   /* ODE counts its own initialisations, so several simulations may do this. */
-  if (!dInitODE2(0)) {
-    free(c);
-    return NULL;
-  }
-  unsigned n = (unsigned)scene->vertex_count;
-  c->object = dCreateConvex(0, c->planes, n + 2, c->points, 2 * n, c->polygons);
-  for (int s = 0; c->object && s < scene->surface_count; s++) {
-    stic_normal_from_degrees(scene->surfaces[s].normal_deg, c->normals[s]);
-    c->surfaces[s] = dCreatePlane(0, c->normals[s][0], c->normals[s][1], 0, 0);
-    if (!c->surfaces[s])
-      break;
-    c->surface_count++;
-  }
-  if (!c->object || c->surface_count < scene->surface_count) {
+  c->by_ode = by_ode && dInitODE2(0);
+  if (by_ode && !(c->by_ode && make_geoms(c))) {
     stic_collider_destroy(c);
     return NULL;
   }
@@ -94,11 +99,12 @@ void stic_collider_destroy(stic_collider *c)
 {
   if (!c)
     return;
-  for (int s = 0; s < c->surface_count; s++)
+  for (int s = 0; s < c->surface_count && c->surfaces[s]; s++)
     dGeomDestroy(c->surfaces[s]);
   if (c->object)
     dGeomDestroy(c->object);
-  dCloseODE();
+  if (c->by_ode)
+    dCloseODE();
   free(c);
 }
 
@@ -117,11 +123,23 @@ static int nearest_vertex(const stic_collider *c, const dReal *point, double cos
   return best;
 }
 
-static uint64_t near_vertices(stic_collider *c, int s, double gap, double cosine, double sine, double reach)
+/* Those whose gap is at most `reach`; `gap` is that of the centre. */
+static uint64_t near_by_gaps(const stic_collider *c, int s, double gap, double cosine, double sine,
+                             double reach)
+{
+  const double nx = cosine * c->normals[s][0] + sine * c->normals[s][1],
+               ny = cosine * c->normals[s][1] - sine * c->normals[s][0];
+  uint64_t mask = 0;
+  for (int i = 0; i < c->vertex_count; i++) {
+    const dReal *v = c->points + 3 * i;
+    mask |= (uint64_t)(gap + nx * v[0] + ny * v[1] <= reach) << i;
+  }
+  return mask;
+}
+
+static uint64_t near_by_ode(stic_collider *c, int s, double gap, double cosine, double sine, double reach)
 {
   const uint64_t all = c->vertex_count == 64 ? ~UINT64_C(0) : (UINT64_C(1) << c->vertex_count) - 1;
-  if (gap > c->radius + reach)
-    return 0;
   /* ODE's convex-plane test reports nothing for an object that lies entirely behind the plane. */
   if (gap <= reach - c->radius)
     return all;
@@ -144,14 +162,18 @@ int stic_collide_near(stic_collider *c, const double *gaps, double cosine, doubl
                       uint64_t *masks)
 {
   int64_t start = c->clock_on ? stic_clock_ns() : 0;
-  const dMatrix3 rotation = {cosine, -sine, 0, 0, sine, cosine, 0, 0, 0, 0, 1, 0};
-  dGeomSetRotation(c->object, rotation);
+  if (c->by_ode) {
+    const dMatrix3 rotation = {cosine, -sine, 0, 0, sine, cosine, 0, 0, 0, 0, 1, 0};
+    dGeomSetRotation(c->object, rotation);
+  }
   double widened = reach / c->unit * (1 + 1e-7) + 1e-7;
   double cx = cosine * c->centre[0] - sine * c->centre[1], cy = sine * c->centre[0] + cosine * c->centre[1];
   int found = 0;
   for (int s = 0; s < c->surface_count; s++) {
     double gap = gaps[s] / c->unit + c->normals[s][0] * cx + c->normals[s][1] * cy;
-    masks[s] = near_vertices(c, s, gap, cosine, sine, widened);
+    masks[s] = gap > c->radius + widened ? 0
+               : c->by_ode               ? near_by_ode(c, s, gap, cosine, sine, widened)
+                                         : near_by_gaps(c, s, gap, cosine, sine, widened);
     found += masks[s] != 0;
   }
   if (c->clock_on)

@@ -189,8 +189,9 @@ static bool is_empty(const part *p)
 /* Keeps of the part what surface i leaves free, the margin included. */
 static void clip(const analysis *a, part *p, int i)
 {
-  const double gap = gap_of(a->scene, i, p->point.x, p->point.y) + a->margin;
-  const double slope = dot(normal_of(a->scene, i), p->tangent);
+  const part *by = &a->parts[i];
+  const vector from = {p->point.x - by->point.x, p->point.y - by->point.y};
+  const double gap = dot(from, by->normal) + a->margin, slope = dot(by->normal, p->tangent);
 
   if (fabs(slope) < LEVEL) {
     if (gap < 0)
@@ -206,14 +207,14 @@ static void find_parts(analysis *a)
 {
   for (int s = 0; s < a->scene->surface_count; s++) {
     const double *point = a->scene->surfaces[s].point;
+    const vector n = normal_of(a->scene, s);
+
+    a->parts[s] = (part){{point[0], point[1]}, {n.y, -n.x}, n, -INFINITY, INFINITY};
+  }
+  for (int s = 0; s < a->scene->surface_count; s++) {
     stic_surface_needs *needs = &a->needs->surfaces[s];
     part *p = &a->parts[s];
 
-    p->normal = normal_of(a->scene, s);
-    p->point = (vector){point[0], point[1]};
-    p->tangent = (vector){p->normal.y, -p->normal.x};
-    p->low = -INFINITY;
-    p->high = INFINITY;
     for (int i = 0; i < a->scene->surface_count && !is_empty(p); i++) {
       if (i == s)
         continue;
@@ -570,21 +571,38 @@ static double find_margin(const analysis *a)
   return MARGIN * largest;
 }
 
+static void begin(analysis *a, const stic_scene *scene, const stic_hand_range *range, stic_needs *needs)
+{
+  memset(needs, 0, sizeof *needs);
+  memset(a, 0, sizeof *a);
+  a->scene = scene;
+  a->range = range;
+  a->needs = needs;
+  needs->size = stic_scene_size(scene);
+  needs->radius = holding_radius(scene, needs->size);
+  a->kappa = scene->rotational_stiffness / scene->stiffness;
+  a->holding = body_to_world(scene, scene->holding_point);
+  a->margin = find_margin(a);
+  find_parts(a);
+}
+
+void stic_needs_find_hidden(const stic_scene *scene, bool *hidden)
+{
+  analysis a;
+  stic_needs needs;
+  stic_hand_range anywhere;
+
+  stic_hand_range_anywhere(&anywhere);
+  begin(&a, scene, &anywhere, &needs);
+  for (int s = 0; s < scene->surface_count; s++)
+    hidden[s] = needs.surfaces[s].reach == STIC_REACH_BEHIND;
+}
+
 void stic_needs_find(const stic_scene *scene, const stic_hand_range *range, stic_needs *needs)
 {
   analysis a;
 
-  memset(needs, 0, sizeof *needs);
-  memset(&a, 0, sizeof a);
-  a.scene = scene;
-  a.range = range;
-  a.needs = needs;
-  needs->size = stic_scene_size(scene);
-  needs->radius = holding_radius(scene, needs->size);
-  a.kappa = scene->rotational_stiffness / scene->stiffness;
-  a.holding = body_to_world(scene, scene->holding_point);
-  a.margin = find_margin(&a);
-  find_parts(&a);
+  begin(&a, scene, range, needs);
   if (range->known)
     find_far(&a);
   for (int s = 0; s < scene->surface_count; s++)

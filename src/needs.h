@@ -73,6 +73,10 @@ typedef struct stic_needs {
   bool broad_phase;   /* worth asking which of them are near */
 } stic_needs;
 
+/* hidden[s]: surface s can never be touched, wherever the hand goes (STIC_REACH_BEHIND). For
+ * scene->surface_count surfaces; the scene must be valid. Real-time: no. */
+void stic_needs_find_hidden(const stic_scene *scene, bool *hidden);
+
 /* The scene must be valid. Real-time: no. */
 void stic_needs_find(const stic_scene *scene, const stic_hand_range *range, stic_needs *needs);
 

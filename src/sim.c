@@ -7,6 +7,8 @@
 
 #include "clock.h"
 #include "error.h"
+#include "needs.h"
+#include "sim.h"
 #include "statics/core.h"
 
 struct stic_sim {
@@ -41,8 +43,27 @@ static const stic_core *core_of(stic_precision precision)
   return &stic_core_f64;
 }
 
+static stic_parts find_parts(const stic_scene *scene, unsigned leave_out)
+{
+  bool hidden[STIC_SURFACES_MAX] = {false};
+  stic_parts parts = {0};
+
+  if (leave_out & STIC_LEAVE_HIDDEN)
+    stic_needs_find_hidden(scene, hidden);
+  for (int s = 0; s < scene->surface_count; s++)
+    if (!hidden[s])
+      parts.surfaces[parts.surface_count++] = s;
+  return parts;
+}
+
 stic_status stic_sim_create(const stic_scene *scene, const stic_settings *settings, stic_sim **out,
                             stic_error *err)
+{
+  return stic_sim_create_parts(scene, settings, STIC_LEAVE_ALL, out, err);
+}
+
+stic_status stic_sim_create_parts(const stic_scene *scene, const stic_settings *settings, unsigned leave_out,
+                                  stic_sim **out, stic_error *err)
 {
   assert(scene && settings && out);
   *out = NULL;
@@ -56,11 +77,13 @@ stic_status stic_sim_create(const stic_scene *scene, const stic_settings *settin
     return stic_error_set(err, STIC_USAGE, NULL, 0, "h_min must be above 0 and at most 1 object size, not %g",
                           settings->h_min);
   stic_sim *sim = calloc(1, sizeof *sim);
+  const stic_parts parts = find_parts(scene, leave_out);
   if (sim) {
     sim->core = core_of(settings->precision);
     sim->state = malloc(sim->core->memory_size());
     sim->events = malloc(STIC_EVENTS_MAX * sizeof *sim->events);
-    sim->collider = stic_collider_create(scene, stic_scene_size(scene));
+    sim->collider = stic_collider_create(scene, stic_scene_size(scene), parts.surfaces, parts.surface_count,
+                                         !(leave_out & STIC_LEAVE_ODE));
   }
   if (!sim || !sim->state || !sim->events || !sim->collider) {
     stic_sim_destroy(sim);
@@ -69,7 +92,7 @@ stic_status stic_sim_create(const stic_scene *scene, const stic_settings *settin
   sim->scene = *scene;
   sim->settings = *settings;
   sim->z = scene->z;
-  sim->core->init(sim->state, scene, settings, sim->collider, sim->events, STIC_EVENTS_MAX);
+  sim->core->init(sim->state, scene, settings, &parts, sim->collider, sim->events, STIC_EVENTS_MAX);
   *out = sim;
   return STIC_OK;
 }

@@ -37,11 +37,17 @@ enum {
   STIC_DECISION_SLIDE_ON = 1 << 11      /* mu_s = mu_d: slid on without events */
 };
 
+/* What a simulation evaluates of the model: all, or what its scene can need (sim.h). */
+typedef struct stic_parts {
+  int surface_count; /* surfaces that can be touched at all; the detector answers in their order */
+  int surfaces[STIC_SURFACES_MAX];
+} stic_parts;
+
 typedef struct stic_core {
   /* Bytes that one simulation needs; init() fills them. */
   size_t (*memory_size)(void);
-  void (*init)(void *core, const stic_scene *scene, const stic_settings *settings, stic_collider *collider,
-               stic_event *events, int event_capacity);
+  void (*init)(void *core, const stic_scene *scene, const stic_settings *settings, const stic_parts *parts,
+               stic_collider *collider, stic_event *events, int event_capacity);
   /* The grip: the object's pose stays; holding point in body coordinates. */
   void (*take)(void *core, double body_x, double body_y);
   /* One RELAX with the hand held still (first sample, and level `frame`). */

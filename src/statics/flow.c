@@ -235,15 +235,10 @@ static bool flow_goes_on(flow *f, flow_pose q, touch *t)
   flow_rates r;
   set_flow_pose(c, q);
   near_update(c, 0);
-  for (int i = 0; i < c->near.count; i++)
-    for (int v = 0; v < c->body.vertex_count; v++) {
-      int s = c->near.surfaces[i];
-      if (!(c->near.vertices[i] >> v & 1) || is_contact(c, v, s))
-        continue;
-      if (gap_of(c, world_vertex(c, v), s) < -c->noise) {
-        *t = (touch){0, v, s};
-        return false;
-      }
+  for (near_pair k = {0}; next_near(c, &k);)
+    if (gap_of(c, world_vertex(c, k.vertex), k.surface) < -c->noise) {
+      *t = (touch){0, k.vertex, k.surface};
+      return false;
     }
   t->at = R_HUGE;
   return flow_solve(f, &r) && modes_hold(f, &r);

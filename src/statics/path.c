@@ -102,16 +102,11 @@ static touch path_first_touch(core *c, const path *f, real x_max)
   touch best = {R_HUGE, 0, 0};
   real sweep = r_min(x_max, 2);
   near_update(c, sweep * (2 * c->body.radius + r_abs(f->xi_c) + r_abs(f->xi_s)));
-  for (int i = 0; i < c->near.count; i++) {
-    int s = c->near.surfaces[i];
-    for (int v = 0; v < c->body.vertex_count; v++) {
-      if (!(c->near.vertices[i] >> v & 1) || is_contact(c, v, s))
-        continue;
-      wave gap = path_gap(c, f, v, s);
-      if (v == f->vertex && f->xi_c == 0 && f->xi_s == 0)
-        continue; /* it does not move */
-      keep_earlier(&best, wave_first_down(&gap, c->noise, x_max), v, s);
-    }
+  for (near_pair k = {0}; next_near(c, &k);) {
+    if (k.vertex == f->vertex && f->xi_c == 0 && f->xi_s == 0)
+      continue; /* it does not move */
+    wave gap = path_gap(c, f, k.vertex, k.surface);
+    keep_earlier(&best, wave_first_down(&gap, c->noise, x_max), k.vertex, k.surface);
   }
   return best;
 }

@@ -216,19 +216,14 @@ static void single_gaps(core *c, sliding_branch *b)
   real reach = r_abs(b->shifts[0]) + r_abs(b->shifts[1]) +
                b->x_max * (2 * c->body.radius + r_abs(at_rest.xi_c) + r_abs(at_rest.xi_s));
   near_update(c, reach);
-  for (int i = 0; i < c->near.count; i++) {
-    int s = c->near.surfaces[i];
-    if (v_dot(c->body.surfaces[s].n, at_rest.t) == 0)
+  for (near_pair k = {0}; next_near(c, &k);) {
+    if (v_dot(c->body.surfaces[k.surface].n, at_rest.t) == 0)
       continue;
-    for (int v = 0; v < c->body.vertex_count; v++) {
-      if (!(c->near.vertices[i] >> v & 1) || is_contact(c, v, s))
-        continue;
-      wave gap = path_gap(c, &at_rest, v, s);
-      if (gap.k + gap.c > reach + c->noise || b->gap_count == STIC_VERTICES_MAX)
-        continue;
-      b->gaps[b->gap_count] = (pair){v, s};
-      b->gap_waves[b->gap_count++] = gap;
-    }
+    wave gap = path_gap(c, &at_rest, k.vertex, k.surface);
+    if (gap.k + gap.c > reach + c->noise || b->gap_count == STIC_VERTICES_MAX)
+      continue;
+    b->gaps[b->gap_count] = (pair){k.vertex, k.surface};
+    b->gap_waves[b->gap_count++] = gap;
   }
 }
 
@@ -276,16 +271,11 @@ static slide_end slide_on_turning(core *c, const hand *from, const hand *to, rea
     single_gaps(c, &b);
     path fixed = b.paths[0];
     near_update(c, x * 2 * c->body.radius);
-    for (int i = 0; i < c->near.count; i++) {
-      int s = c->near.surfaces[i];
-      if (v_dot(c->body.surfaces[s].n, fixed.t) != 0)
+    for (near_pair k = {0}; next_near(c, &k);) {
+      if (v_dot(c->body.surfaces[k.surface].n, fixed.t) != 0)
         continue;
-      for (int v = 0; v < c->body.vertex_count; v++) {
-        if (!(c->near.vertices[i] >> v & 1) || is_contact(c, v, s))
-          continue;
-        wave gap = path_gap(c, &fixed, v, s);
-        keep_earlier(&t, wave_first_down(&gap, c->noise, x), v, s);
-      }
+      wave gap = path_gap(c, &fixed, k.vertex, k.surface);
+      keep_earlier(&t, wave_first_down(&gap, c->noise, x), k.vertex, k.surface);
     }
   } else {
     t = path_first_touch(c, &b.paths[0], x);

@@ -56,7 +56,8 @@ static void init_surfaces(body *b, const stic_scene *scene, double unit)
 }
 
 static void core_init(void *memory, const stic_scene *scene, const stic_settings *settings,
-                      stic_collider *collider, stic_event *events, int event_capacity)
+                      const stic_parts *parts, stic_collider *collider, stic_event *events,
+                      int event_capacity)
 {
   core *c = memory;
   memset(c, 0, sizeof *c);
@@ -64,6 +65,7 @@ static void core_init(void *memory, const stic_scene *scene, const stic_settings
   c->settings = *settings;
   c->unit = length_unit(size);
   c->force_unit = scene->stiffness * c->unit;
+  c->parts = *parts;
   c->collider = collider;
   c->events = events;
   c->event_capacity = event_capacity;

@@ -68,6 +68,13 @@ typedef struct near_list {
   uint64_t vertices[STIC_SURFACES_MAX]; /* mask per listed surface */
 } near_list;
 
+/* A walk through the list; zeroed at its start. */
+typedef struct near_pair {
+  int vertex, surface;
+  int listed;    /* surfaces begun */
+  uint64_t left; /* vertices of this one */
+} near_pair;
+
 /* Contact forces as an optimisation over the cones (cone.c); kept while the contacts stay. */
 enum {
   BOUND_LOW = -1,
@@ -95,6 +102,7 @@ typedef struct core {
   double unit;       /* m per scaled length, a power of two */
   double force_unit; /* N per scaled force: k_p unit */
   stic_collider *collider;
+  stic_parts parts;
   near_list near;
 
   /* state */
@@ -172,6 +180,7 @@ typedef struct touch {
 } touch;
 
 static void near_update(core *c, real travel);
+static bool next_near(const core *c, near_pair *k);
 static bool is_contact(const core *c, int vertex, int on);
 static bool is_opened(const core *c, int vertex, int on);
 static void forget_opened_that_left(core *c);

@@ -87,16 +87,16 @@ static void near_update(core *c, real travel)
   near->theta = c->theta;
   near->valid = true;
   near->count = 0;
-  for (int s = 0; s < c->body.surface_count; s++)
-    c->gap_scratch[s] = (double)(gap_of(c, c->p, s)) * c->unit;
+  for (int i = 0; i < c->parts.surface_count; i++)
+    c->gap_scratch[i] = (double)(gap_of(c, c->p, c->parts.surfaces[i])) * c->unit;
   double widened = (double)near->reach * c->unit * (1 + 64 * (double)REAL_EPSILON);
   stic_collide_near(c->collider, c->gap_scratch, (double)c->rot.x, (double)c->rot.y, widened,
                     c->mask_scratch);
-  for (int s = 0; s < c->body.surface_count; s++) {
-    if (!c->mask_scratch[s])
+  for (int i = 0; i < c->parts.surface_count; i++) {
+    if (!c->mask_scratch[i])
       continue;
-    near->surfaces[near->count] = s;
-    near->vertices[near->count++] = c->mask_scratch[s];
+    near->surfaces[near->count] = c->parts.surfaces[i];
+    near->vertices[near->count++] = c->mask_scratch[i];
   }
 }
 
@@ -111,18 +111,34 @@ static void keep_earlier(touch *best, real at, int vertex, int on)
   }
 }
 
+/* The next near pair that is no contact; false: no more. Begins with a zeroed `k`. */
+static bool next_near(const core *c, near_pair *k)
+{
+  for (;;) {
+    while (k->left == 0) {
+      if (k->listed == c->near.count)
+        return false;
+      k->surface = c->near.surfaces[k->listed];
+      k->left = c->near.vertices[k->listed++];
+      k->vertex = -1;
+    }
+    do {
+      k->vertex++;
+      bool found = k->left & 1;
+      k->left >>= 1;
+      if (found && !is_contact(c, k->vertex, k->surface))
+        return true;
+    } while (k->left);
+  }
+}
+
 static void add_touching(core *c)
 {
   near_update(c, 0);
-  for (int i = 0; i < c->near.count; i++) {
-    int s = c->near.surfaces[i];
-    for (int v = 0; v < c->body.vertex_count; v++) {
-      if (!(c->near.vertices[i] >> v & 1) || is_contact(c, v, s) || is_opened(c, v, s))
-        continue;
-      if (gap_of(c, world_vertex(c, v), s) <= TOLERANCE * c->body.size + c->noise)
-        add_contact(c, v, s);
-    }
-  }
+  for (near_pair k = {0}; next_near(c, &k);)
+    if (!is_opened(c, k.vertex, k.surface) &&
+        gap_of(c, world_vertex(c, k.vertex), k.surface) <= TOLERANCE * c->body.size + c->noise)
+      add_contact(c, k.vertex, k.surface);
 }
 
 /* The object goes straight by `travel` (of its holding point) and turns by `turn` about it, both evenly:
@@ -133,22 +149,20 @@ static touch first_touch_moving(core *c, vec travel, real turn)
   real radius = c->body.radius + v_length(c->b);
   near_update(c, v_length(travel) + r_min(r_abs(turn), 2) * radius);
   vec g = holding_point(c);
-  for (int i = 0; i < c->near.count; i++) {
-    int s = c->near.surfaces[i];
-    vec n = c->body.surfaces[s].n;
-    real base = gap_of(c, g, s), drift = v_dot(n, travel);
-    if (r_min(base, base + drift) > radius + c->noise)
+  for (near_pair k = {0}; next_near(c, &k);) {
+    vec n = c->body.surfaces[k.surface].n;
+    real base = gap_of(c, g, k.surface), drift = v_dot(n, travel);
+    if (r_min(base, base + drift) > radius + c->noise) {
+      k.left = 0; /* nor can the others on this surface */
       continue;
-    for (int v = 0; v < c->body.vertex_count; v++) {
-      if (!(c->near.vertices[i] >> v & 1) || is_contact(c, v, s))
-        continue;
-      vec e = rotate(c->rot, v_sub(c->body.vertices[v], c->b));
-      real w_c = v_dot(n, e);
-      if (turn == 0 && r_min(base, base + drift) + w_c > c->noise)
-        continue;
-      wave w = {base, w_c, v_dot(n, v_perp(e))};
-      keep_earlier(&best, drift_first_down(w, turn, drift, c->noise, &c->report->iterations), v, s);
     }
+    vec e = rotate(c->rot, v_sub(c->body.vertices[k.vertex], c->b));
+    real w_c = v_dot(n, e);
+    if (turn == 0 && r_min(base, base + drift) + w_c > c->noise)
+      continue;
+    wave w = {base, w_c, v_dot(n, v_perp(e))};
+    keep_earlier(&best, drift_first_down(w, turn, drift, c->noise, &c->report->iterations), k.vertex,
+                 k.surface);
   }
   return best;
 }

@@ -1,0 +1,20 @@
+/* Inside of the simulation: which parts of the model it leaves out because its scene cannot need them. Results are
+ * the same to the last bit; tests prove it and `stiction bench speed` shows what each part costs. */
+#ifndef STIC_SIM_H
+#define STIC_SIM_H
+
+#include "stiction.h"
+
+/* Parts to leave out, where the scene allows it. */
+enum {
+  STIC_LEAVE_HIDDEN = 1, /* surfaces that lie behind others: never touched (needs.c) */
+  STIC_LEAVE_ODE = 2,    /* ODE's collision detection: the gaps of convex vertices to planes need none */
+  STIC_LEAVE_NONE = 0,   /* the full model */
+  STIC_LEAVE_ALL = 3     /* what stic_sim_create() does */
+};
+
+/* As stic_sim_create(), with a choice of what is left out. Real-time: no. */
+stic_status stic_sim_create_parts(const stic_scene *scene, const stic_settings *settings, unsigned leave_out,
+                                  stic_sim **sim, stic_error *err);
+
+#endif
