@@ -29,7 +29,10 @@ struct stic_movie {
   bool folder_made; /* by us: goes again if nothing is kept */
   bool begun;
   int64_t first_ns, last_ns; /* times of the first and the newest result */
-  int64_t count;             /* pictures drawn */
+  int64_t count;             /* pictures so far */
+  bool late;
+  int64_t dropped;  /* of them not drawn */
+  stic_image image; /* drawn last */
 };
 
 void stic_movie_settings_init(stic_movie_settings *s)
@@ -199,15 +202,19 @@ static void tell_time(const stic_movie *m, stic_movie_stage stage, int64_t since
 static stic_status draw_one(stic_movie *m, stic_error *err)
 {
   int64_t start = stic_clock_ns();
-  stic_image image;
-  stic_status status = stic_render_draw(m->render, &image, err);
+  stic_status status = STIC_OK;
 
-  tell_time(m, STIC_MOVIE_RENDER, start);
+  if (m->late && m->count > 0) {
+    m->dropped++;
+  } else {
+    status = stic_render_draw(m->render, &m->image, err);
+    tell_time(m, STIC_MOVIE_RENDER, start);
+  }
   start = stic_clock_ns();
   if (!status && m->writer)
-    status = stic_png_writer_add(m->writer, m->count, &image, err);
+    status = stic_png_writer_add(m->writer, m->count, &m->image, err);
   if (!status && m->video)
-    status = stic_video_add(m->video, &image, err);
+    status = stic_video_add(m->video, &m->image, err);
   tell_time(m, STIC_MOVIE_ENCODE, start);
   m->count += !status;
   return status;
@@ -233,6 +240,16 @@ stic_status stic_movie_before(stic_movie *m, int64_t t_ns, stic_error *err)
   while (!status && m->begun && is_due(m, t_ns, false))
     status = draw_one(m, err);
   return status;
+}
+
+void stic_movie_set_late(stic_movie *m, bool late)
+{
+  m->late = late;
+}
+
+int64_t stic_movie_dropped(const stic_movie *m)
+{
+  return m->dropped;
 }
 
 void stic_movie_observe(stic_movie *m, const stic_result *result)

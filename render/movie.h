@@ -40,6 +40,12 @@ stic_status stic_movie_open(const stic_movie_settings *settings, const stic_scen
 /* Draws the pictures that are due before time t_ns: call it before each result but the first. */
 stic_status stic_movie_before(stic_movie *movie, int64_t t_ns, stic_error *err);
 
+/* While `late`, pictures that are due show the one drawn last again instead of being drawn; the first one is
+ * always drawn. So the timeline stays true where drawing cannot keep up. Default false. */
+void stic_movie_set_late(stic_movie *movie, bool late);
+/* Pictures that were not drawn for that. */
+int64_t stic_movie_dropped(const stic_movie *movie);
+
 /* Notes a result. Cheap. */
 void stic_movie_observe(stic_movie *movie, const stic_result *result);
 
@@ -49,7 +55,7 @@ stic_status stic_movie_finish(stic_movie *movie, stic_error *err);
 /* After finish: moves the outputs to their places, instead of older ones. */
 stic_status stic_movie_keep(stic_movie *movie, stic_error *err);
 
-/* Pictures drawn so far. */
+/* Pictures so far. */
 int64_t stic_movie_count(const stic_movie *movie);
 
 /* The renderer, for its rasteriser, times and note. */

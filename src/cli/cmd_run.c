@@ -1,90 +1,109 @@
 /* stiction run: a device's samples through the solver in real time. */
-#include "../../drivers/connection.h"
-#include "../../drivers/motion/tracker_yaml.h"
 #include "../error.h"
 #include "../io/trace_csv.h"
+#include "../live/live.h"
 #include "cli.h"
+#include "run_pictures.h"
 #include "session.h"
 
-#include <sched.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define BATCH 64 /* samples taken at once */
+#define NEWS_ROOM 64
+#define LOOK_NS                                                                                              \
+  50000000 /* how often the main thread looks for news, and for a signal that just missed its wait */
 
 static const stic_cli_usage usage = {
   "run", "[OPTION...] SCENE --device NAME[:key=value,...]",
-  "Solves a device's samples as they come, at least 31 a second if the device gives them, and says at\n"
-  "the end how it kept up. SIGINT or SIGTERM ends it with 0 and everything written. A recording is\n"
-  "readable to its last whole line whatever happens; replay of it gives the same log rows.\n",
+  "Solves a device's samples as they come, each of them, and says at the end how it kept up. Where none\n"
+  "comes within 1/31 s the last pose is solved again and recorded as such; not for traces, whose samples\n"
+  "have times of their own that an invented one could overtake.\n"
+  "SIGINT or SIGTERM ends it with 0 and everything written. Disk, terminal and pictures never delay the\n"
+  "loop: rows wait in a queue, and if that is full the run ends with 5; pictures that come too late are\n"
+  "dropped and counted. A recording is readable to its last whole line whatever happens; replay of it\n"
+  "gives the same log rows.\n",
   1, 1};
+
+/* A change of the connection, from the reader to the main thread. */
+typedef struct news {
+  stic_connection state;
+  char text[600];
+} news;
 
 typedef struct run {
   stic_session session;
   stic_supervisor *device;
   stic_tracker tracker;         /* from the device's frame to the room's */
   stic_trace_writer *recording; /* NULL: none asked for */
-  int64_t start_ns;             /* t_ns of the first sample */
-  bool begun;
+  stic_ring *news;
+  stic_run_pictures *pictures;
 } run;
 
-static bool has_own_time(const run *r)
+/* ---- news of the connection ---------------------------------------------------------------- */
+
+/* Each change of the connection, once; in the reader's thread, which no terminal may hold up. */
+static void on_connection(void *context, stic_connection state, const char *text)
 {
-  return stic_supervisor_driver(r->device)->own_time;
+  run *r = context;
+  news *item = stic_ring_slot(r->news);
+
+  if (!item)
+    return;
+  item->state = state;
+  stic_error_quote(text, strlen(text), item->text, sizeof item->text);
+  stic_ring_put(r->news);
 }
 
-/* What the solver is given: time since the first sample, or the source's own. */
-static stic_sample solver_sample(run *r, const stic_device_sample *from)
+static void tell_news(run *r)
 {
-  stic_sample to;
+  const news *item;
 
-  if (!r->begun)
-    r->start_ns = from->t_ns;
-  r->begun = true;
-  memset(&to, 0, sizeof to);
-  to.t_ns = has_own_time(r) ? from->source_ns : from->t_ns - r->start_ns;
-  memcpy(to.position, from->position, sizeof to.position);
-  memcpy(to.orientation, from->orientation, sizeof to.orientation);
-  to.buttons = from->buttons & ~STIC_TRACE_BUTTON_LOST;
-  to.lost = !(from->flags & STIC_SAMPLE_TRACKED);
-  return to;
-}
+  while ((item = stic_ring_front(r->news)) != NULL) {
+    const stic_connection state = item->state;
 
-static stic_status solve(run *r, stic_device_sample *samples, int count, int64_t read_ns, stic_error *err)
-{
-  const unsigned known = STIC_SAMPLE_POSITION | STIC_SAMPLE_ORIENTATION;
-
-  for (int i = 0; i < count; i++) {
-    stic_sample sample;
-
-    /* A trace is a hand in the room already. */
-    if (!has_own_time(r))
-      stic_tracker_apply(&r->tracker, &samples[i]);
-    if ((samples[i].flags & known) != known)
-      continue; /* nobody knows yet where the hand is */
-    sample = solver_sample(r, &samples[i]);
-    /* Recorded first: what the solver was given is on disk whatever it does with it. */
-    if (r->recording) {
-      const stic_status status = stic_trace_write(r->recording, &sample, err);
-
-      if (status != STIC_OK)
-        return status;
-    }
-    stic_session_step(&r->session, &sample, i == 0 ? read_ns : 0);
+    if (state == STIC_CONNECTION_STALE || state == STIC_CONNECTION_LOST)
+      stic_cli_say("the tracker is %s%s%s", stic_connection_name(state), item->text[0] ? ": " : "",
+                   item->text);
+    else if (state == STIC_CONNECTION_RUNNING)
+      stic_cli_say("tracking: %s", item->text);
+    stic_ring_take(r->news);
   }
-  return STIC_OK;
 }
 
-/* Each change of the connection, once. */
-static void tell_connection(void *context, stic_connection state, const char *text)
+/* ---- what the writer thread does ------------------------------------------------------------ */
+
+static stic_status session_status(const run *r, stic_error *err)
 {
-  (void)context;
-  if (state == STIC_CONNECTION_STALE || state == STIC_CONNECTION_LOST)
-    stic_cli_say("the tracker is %s%s%s", stic_connection_name(state), text[0] ? ": " : "", text);
-  else if (state == STIC_CONNECTION_RUNNING)
-    stic_cli_say("tracking: %s", text);
+  /* The commit will say which file and why. */
+  return stic_session_write_failed(&r->session)
+           ? stic_error_set(err, STIC_CANNOT_WRITE, NULL, 0, "an output cannot be written")
+           : STIC_OK;
 }
+
+static stic_status write_row(void *user, const stic_live_row *row, stic_error *err)
+{
+  run *r = user;
+
+  /* Recorded first: what the log has can be replayed. */
+  if (r->recording) {
+    const stic_status status = stic_trace_write(r->recording, &row->sample, err);
+
+    if (status != STIC_OK)
+      return status;
+  }
+  stic_session_write(&r->session, &row->result, row->events, row->event_count);
+  return session_status(r, err);
+}
+
+static stic_status flush_rows(void *user, stic_error *err)
+{
+  run *r = user;
+
+  stic_session_flush(&r->session);
+  return session_status(r, err);
+}
+
+/* ---- the run -------------------------------------------------------------------------------- */
 
 static int device_failure(const run *r, int result)
 {
@@ -99,137 +118,205 @@ static int device_failure(const run *r, int result)
   }
 }
 
-/* Until the device ends, a signal comes or nothing can be written any more. Returns the exit code. */
-static int loop(run *r, stic_error *err)
+/* Until the device ends, a signal comes or nothing can be written any more. */
+static stic_status loop(run *r, stic_live_report *report, stic_error *err)
 {
-  stic_device_sample samples[BATCH];
+  const stic_live_pictures pictures = stic_run_pictures_calls(r->pictures, &r->session.scene);
+  const stic_live_settings settings = {
+    .device = r->device,
+    .tracker = &r->tracker,
+    .sim = r->session.sim,
+    .events = r->session.events != NULL,
+    .output = {r, write_row, flush_rows},
+    .pictures = stic_run_pictures_wanted(r->pictures) ? &pictures : NULL,
+  };
+  stic_live *live;
+  const stic_status status = stic_live_start(&settings, &live, err);
 
-  while (stic_cli_signal() == 0 && !stic_session_write_failed(&r->session)) {
-    const int64_t asleep_ns = stic_clock_ns();
-    const int count = stic_supervisor_poll(r->device, asleep_ns + STIC_FRAME_NS, samples, BATCH);
-    const int64_t awake_ns = stic_clock_ns();
-
-    if (count < 0)
-      return device_failure(r, count);
-    /* Late is what the scheduler adds; a sample that waited for us is another matter. */
-    if (count > 0 && has_own_time(r) && samples[0].t_ns > asleep_ns)
-      stic_timing_add(r->session.timing, STIC_STAGE_WAKEUP, awake_ns - samples[0].t_ns);
-    if (solve(r, samples, count, 0, err) != STIC_OK)
-      return stic_cli_fail(err);
+  if (status != STIC_OK)
+    return status;
+  while (stic_live_runs(live) && stic_cli_signal() == 0) {
+    stic_live_wait(live, LOOK_NS);
+    tell_news(r);
   }
+  stic_live_finish(live, r->session.timing, report);
+  tell_news(r);
   return STIC_OK;
 }
 
-static const char *scheduling_text(void)
+/* ---- how it went ---------------------------------------------------------------------------- */
+
+static void count_all(run *r, const stic_live_report *report)
 {
-  switch (sched_getscheduler(0)) {
-  case SCHED_FIFO: return "SCHED_FIFO";
-  case SCHED_RR: return "SCHED_RR";
-  default: return "SCHED_OTHER";
-  }
+  stic_timing *t = r->session.timing;
+
+  stic_timing_count(t, "repeated", report->repeated);
+  stic_timing_count(t, "lost_samples", report->lost_samples);
+  stic_timing_count(t, "samples_queued_most", (int64_t)report->samples_most);
+  stic_timing_count(t, "rows_queued_most", (int64_t)report->rows_most);
+  if (!stic_run_pictures_wanted(r->pictures))
+    return;
+  stic_timing_count(t, "pictures", r->pictures->count);
+  stic_timing_count(t, "dropped_pictures", r->pictures->dropped);
+  stic_timing_count(t, "results_unseen_by_pictures", report->unseen_results);
+  stic_timing_merge(t, &r->pictures->timing);
 }
 
-static void report(const run *r)
+static void tell_times(const stic_timing *t)
 {
-  const stic_timing *t = r->session.timing;
   const stic_histogram *frame = &t->stages[STIC_STAGE_FRAME];
-  const stic_histogram *wakeup = &t->stages[STIC_STAGE_WAKEUP];
+
+  stic_cli_say(
+    "computing p50 %.1f us, p99 %.1f us, max %.1f us; %lld of %lld over 1/%d s; woke late p99 %.1f us",
+    (double)stic_histogram_quantile(frame, 0.5) / 1e3, (double)stic_histogram_quantile(frame, 0.99) / 1e3,
+    (double)frame->max_ns / 1e3, (long long)t->missed, (long long)frame->count, STIC_TARGET_HZ,
+    (double)stic_histogram_quantile(&t->stages[STIC_STAGE_WAKEUP], 0.99) / 1e3);
+  for (int i = 0; i < STIC_DEVICE_RATES; i++) {
+    if (t->over[i] > t->missed)
+      stic_cli_say("%lld over 1/%g s", (long long)t->over[i], stic_timing_rate(i));
+  }
+  for (int i = 0; i < t->miss_count && i < 4; i++)
+    stic_cli_say("missed at %.3f s: %s took %.1f ms", (double)t->misses[i].at_ns / 1e9, t->misses[i].why,
+                 (double)t->misses[i].ns / 1e6);
+}
+
+static void tell_report(const run *r, const stic_live_report *report)
+{
   const double seconds = (double)(stic_clock_ns() - r->session.started_ns) / 1e9;
 
-  stic_cli_say("%lld samples in %.1f s, %.1f a second; target %d", (long long)r->session.rows, seconds,
-               (double)r->session.rows / seconds, STIC_TARGET_HZ);
-  if (r->session.rows > 0)
-    stic_cli_say(
-      "computing p50 %.1f us, p99 %.1f us, max %.1f us; %lld of %lld over 1/%d s; woke late p99 %.1f us",
-      (double)stic_histogram_quantile(frame, 0.5) / 1e3, (double)stic_histogram_quantile(frame, 0.99) / 1e3,
-      (double)frame->max_ns / 1e3, (long long)t->missed, (long long)frame->count, STIC_TARGET_HZ,
-      (double)stic_histogram_quantile(wakeup, 0.99) / 1e3);
+  stic_cli_say("%lld samples and %lld repeated frames in %.1f s, %.1f frames a second; target %d",
+               (long long)(report->rows - report->repeated), (long long)report->repeated, seconds,
+               (double)report->rows / seconds, STIC_TARGET_HZ);
+  if (report->rows > 0)
+    tell_times(r->session.timing);
+  stic_cli_say("%s; %zu samples and %zu rows at most waited", report->scheduling, report->samples_most,
+               report->rows_most);
+  if (report->lost_samples > 0)
+    stic_cli_say("%lld samples lost: the solver was too slow for them", (long long)report->lost_samples);
+  if (stic_run_pictures_wanted(r->pictures))
+    stic_cli_say("%lld pictures, %lld of them dropped (shown as the one before)",
+                 (long long)r->pictures->count, (long long)r->pictures->dropped);
 }
 
-static int finish(run *r, int code, stic_error *err)
+static int finish(run *r, const stic_live_report *report, stic_error *err)
 {
   stic_trace_writer *recording = r->recording;
+  const bool session_failed = stic_session_write_failed(&r->session);
+  int code = report->end == STIC_LIVE_DEVICE_ENDED ? device_failure(r, report->device_result) : STIC_OK;
   bool pipe_closed;
 
+  if (report->output_error.status != STIC_OK && !session_failed)
+    code = stic_cli_fail(&report->output_error);
   r->recording = NULL;
   if (stic_trace_finish(recording, err) != STIC_OK && code == STIC_OK)
     code = stic_cli_fail(err);
-  if (stic_session_commit(&r->session, scheduling_text(), &pipe_closed, err) != STIC_OK && !pipe_closed)
+  count_all(r, report);
+  if (stic_session_commit(&r->session, report->scheduling, &pipe_closed, err) != STIC_OK && !pipe_closed)
     code = stic_cli_fail(err);
-  report(r);
+  if (report->picture_error.status != STIC_OK)
+    code = stic_cli_fail(&report->picture_error);
+  tell_report(r, report);
   return code;
 }
 
-static stic_status open_all(run *r, const stic_session_options *options, const char *scene,
-                            const char *device, const char *tracker, const char *record, stic_error *err)
+/* Where samples come from and go to. */
+typedef struct run_options {
+  stic_session_options session;
+  char *device, *tracker, *record; /* popt's copies */
+  stic_run_pictures pictures;
+} run_options;
+
+static stic_status open_device(run *r, const run_options *o, const char *scene, stic_error *err)
 {
-  const stic_supervisor_options supervised = {tell_connection, NULL, 0};
+  const stic_supervisor_options supervised = {on_connection, r, 0};
   const char *const inputs[] = {scene};
+  const char *const outputs[] = {o->session.log, o->session.events, o->session.timing, o->record,
+                                 o->pictures.video};
   stic_tracker_settings settings;
-  const char *const outputs[] = {options->log, options->events, options->timing, record};
-  char described[300];
-  stic_status status = stic_cli_check_paths(inputs, 1, outputs, 4, err);
+  stic_status status = stic_cli_check_paths(inputs, 1, outputs, 5, err);
 
   if (status == STIC_OK)
-    status = stic_tracker_read(tracker ? tracker : scene, tracker != NULL, &settings, err);
+    status = stic_tracker_read(o->tracker ? o->tracker : scene, o->tracker != NULL, &settings, err);
   if (status == STIC_OK)
-    status = stic_supervisor_open(device, &supervised, &r->device, err);
-  if (status != STIC_OK)
-    return status;
-  stic_tracker_begin(&r->tracker, &settings, stic_supervisor_driver(r->device)->kind);
-  stic_supervisor_describe(r->device, described, sizeof described);
-  status = stic_session_open(&r->session, options, scene, "device", described, err);
+    status = stic_ring_create(sizeof(news), NEWS_ROOM, &r->news, err);
   if (status == STIC_OK)
-    status = stic_session_time(&r->session, err);
-  if (status == STIC_OK && record)
-    status = stic_trace_create(record, described, &r->recording, err);
+    status = stic_supervisor_open(o->device, &supervised, &r->device, err);
+  if (status == STIC_OK)
+    stic_tracker_begin(&r->tracker, &settings, stic_supervisor_driver(r->device)->kind);
   return status;
 }
 
-static int run_device(const stic_session_options *options, const char *scene, const char *device,
-                      const char *tracker, const char *record)
+static stic_status open_all(run *r, const run_options *o, const char *scene, stic_error *err)
+{
+  char described[300];
+  stic_status status = open_device(r, o, scene, err);
+
+  if (status != STIC_OK)
+    return status;
+  stic_supervisor_describe(r->device, described, sizeof described);
+  status = stic_session_open(&r->session, &o->session, scene, "device", described, err);
+  if (status == STIC_OK)
+    status = stic_session_time(&r->session, err);
+  if (status == STIC_OK && o->record)
+    status = stic_trace_create(o->record, described, &r->recording, err);
+  return status;
+}
+
+static int run_device(run_options *options, const char *scene)
 {
   run r;
+  stic_live_report report;
   stic_error err;
   int code;
 
   memset(&r, 0, sizeof r);
-  if (open_all(&r, options, scene, device, tracker, record, &err) != STIC_OK)
+  r.pictures = &options->pictures;
+  if (open_all(&r, options, scene, &err) != STIC_OK || loop(&r, &report, &err) != STIC_OK)
     code = stic_cli_fail(&err);
   else
-    code = finish(&r, loop(&r, &err), &err);
+    code = finish(&r, &report, &err);
   stic_trace_finish(r.recording, NULL);
   stic_session_close(&r.session);
   stic_supervisor_close(r.device);
+  stic_ring_destroy(r.news);
   return code;
+}
+
+static void free_options(run_options *o)
+{
+  stic_session_options_free(&o->session);
+  stic_run_pictures_free(&o->pictures);
+  free(o->device);
+  free(o->tracker);
+  free(o->record);
 }
 
 int stic_cmd_run(int argc, const char **argv)
 {
-  stic_session_options options = {NULL, NULL, NULL, NULL, NULL, NULL};
-  char *device = NULL, *tracker = NULL, *record = NULL;
+  run_options o;
   const struct poptOption table[] = {
-    {"device", 'd', POPT_ARG_STRING, &device, 0,
+    {"device", 'd', POPT_ARG_STRING, &o.device, 0,
      "The tracker, e.g. trace:file=hand.csv,speed=2,loop or trace:file=- (standard input)",
      "NAME[:key=value,...]"},
-    {"tracker", '\0', POPT_ARG_STRING, &tracker, 0,
+    {"tracker", '\0', POPT_ARG_STRING, &o.tracker, 0,
      "Where the tracker stands and which button does what, instead of the scene's section tracker", "FILE"},
-    {"record", '\0', POPT_ARG_STRING, &record, 0, "Record the samples as a trace", "FILE"},
-    STIC_SESSION_OPTIONS(&options),
+    {"record", '\0', POPT_ARG_STRING, &o.record, 0, "Record the samples as a trace", "FILE"},
+    STIC_SESSION_OPTIONS(&o.session),
+    STIC_RUN_PICTURE_OPTIONS(&o.pictures),
     POPT_TABLEEND};
   stic_cli_args args;
-  int code = stic_cli_parse(&usage, table, argc, argv, &args);
+  int code;
 
-  if (code < 0 && !device) {
+  memset(&o, 0, sizeof o);
+  stic_run_pictures_init(&o.pictures);
+  code = stic_cli_parse(&usage, table, argc, argv, &args);
+  if (code < 0 && !o.device) {
     stic_cli_say("run: no device; expected --device NAME[:key=value,...]");
     code = STIC_USAGE;
   }
   if (code < 0)
-    code = run_device(&options, args.positions[0], device, tracker, record);
+    code = run_device(&o, args.positions[0]);
   stic_cli_args_free(&args);
-  stic_session_options_free(&options);
-  free(device);
-  free(tracker);
-  free(record);
+  free_options(&o);
   return code;
 }

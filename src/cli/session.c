@@ -93,37 +93,38 @@ stic_status stic_session_time(stic_session *s, stic_error *err)
   return STIC_OK;
 }
 
-static void write_row(stic_session *s)
+void stic_session_write(stic_session *s, const stic_result *result, const stic_event *events, int event_count)
 {
   if (s->log)
-    stic_log_row(s->log, &s->result);
-  if (s->events) {
-    int count = 0;
-    const stic_event *events = stic_sim_events(s->sim, &count);
+    stic_log_row(s->log, result);
+  if (s->events)
+    stic_events_rows(s->events, events, event_count);
+}
 
-    stic_events_rows(s->events, events, count);
-  }
+static void write_last(stic_session *s)
+{
+  int count = 0;
+  const stic_event *events = s->events ? stic_sim_events(s->sim, &count) : NULL;
+
+  stic_session_write(s, &s->result, events, count);
 }
 
 int64_t stic_session_step(stic_session *s, const stic_sample *sample, int64_t read_ns)
 {
-  int64_t start, collide = 0, total = 0, write, frame;
+  int64_t start, total, write, frame;
 
   s->rows++;
+  stic_sim_step(s->sim, sample, &s->result);
   if (!s->timing) {
-    stic_sim_step(s->sim, sample, &s->result);
-    write_row(s);
+    write_last(s);
     return 0;
   }
-  stic_sim_step(s->sim, sample, &s->result);
-  stic_sim_stage_times(s->sim, &collide, &total);
+  total = stic_timing_add_step(s->timing, s->sim);
   start = stic_clock_ns();
-  write_row(s);
+  write_last(s);
   write = stic_clock_ns() - start;
   frame = read_ns + total + write;
   stic_timing_add(s->timing, STIC_STAGE_READ, read_ns);
-  stic_timing_add(s->timing, STIC_STAGE_COLLIDE, collide);
-  stic_timing_add(s->timing, STIC_STAGE_SOLVE, total - collide);
   stic_timing_add(s->timing, STIC_STAGE_WRITE, write);
   stic_timing_add(s->timing, STIC_STAGE_FRAME, frame);
   return frame;
@@ -132,6 +133,14 @@ int64_t stic_session_step(stic_session *s, const stic_sample *sample, int64_t re
 bool stic_session_write_failed(const stic_session *s)
 {
   return (s->log && stic_outfile_error(s->log) != 0) || (s->events && stic_outfile_error(s->events) != 0);
+}
+
+void stic_session_flush(stic_session *s)
+{
+  if (s->log)
+    stic_outfile_flush(s->log);
+  if (s->events)
+    stic_outfile_flush(s->events);
 }
 
 static stic_status commit(stic_outfile **out, bool *pipe_closed, stic_error *err)

@@ -67,6 +67,13 @@ stic_status stic_session_time(stic_session *session, stic_error *err);
  * took, 0 without timing. Failed writes show in stic_session_write_failed(). */
 int64_t stic_session_step(stic_session *session, const stic_sample *sample, int64_t read_ns);
 
+/* The second half of it: writes what a step gave, be it in another thread. */
+void stic_session_write(stic_session *session, const stic_result *result, const stic_event *events,
+                        int event_count);
+
+/* Hands on what is buffered, for those who follow a run. */
+void stic_session_flush(stic_session *session);
+
 /* Whether an output could not be written: no use in going on, stic_session_commit() will say why. */
 bool stic_session_write_failed(const stic_session *session);
 

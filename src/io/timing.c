@@ -15,6 +15,13 @@
 
 #define NS_PER_S 1000000000
 
+static const struct {
+  const char *name;
+  double hz;
+  int64_t period_ns;
+} rates[STIC_DEVICE_RATES] = {
+  {"50", 50, 20000000}, {"62.5", 62.5, 16000000}, {"125", 125, 8000000}, {"250", 250, 4000000}};
+
 bool stic_clock_sleep_until(int64_t t_ns)
 {
   struct timespec until;
@@ -96,7 +103,78 @@ void stic_timing_add(stic_timing *timing, stic_stage stage, int64_t ns)
   if (!timing)
     return;
   stic_histogram_add(&timing->stages[stage], ns);
-  timing->missed += stage == STIC_STAGE_FRAME && ns > STIC_FRAME_NS;
+  if (stage != STIC_STAGE_FRAME)
+    return;
+  timing->missed += ns > STIC_FRAME_NS;
+  for (int i = 0; i < STIC_DEVICE_RATES; i++)
+    timing->over[i] += ns > rates[i].period_ns;
+}
+
+int64_t stic_timing_add_step(stic_timing *timing, const stic_sim *sim)
+{
+  int64_t collide, total;
+
+  stic_sim_stage_times(sim, &collide, &total);
+  stic_timing_add(timing, STIC_STAGE_COLLIDE, collide);
+  stic_timing_add(timing, STIC_STAGE_SOLVE, total - collide);
+  return total;
+}
+
+void stic_timing_list_miss(stic_timing *timing, int64_t at_ns, int64_t ns, const char *why)
+{
+  if (timing->miss_count < STIC_MISSES_MAX)
+    timing->misses[timing->miss_count++] = (stic_miss){at_ns, ns, why};
+}
+
+void stic_timing_count(stic_timing *timing, const char *name, int64_t value)
+{
+  assert(timing->count_count < STIC_COUNTS_MAX);
+  timing->counts[timing->count_count++] = (stic_count){name, value};
+}
+
+double stic_timing_rate(int index)
+{
+  assert(index >= 0 && index < STIC_DEVICE_RATES);
+  return rates[index].hz;
+}
+
+static void merge_histogram(stic_histogram *into, const stic_histogram *from)
+{
+  into->count += from->count;
+  if (from->max_ns > into->max_ns)
+    into->max_ns = from->max_ns;
+  for (size_t bin = 0; bin < STIC_HISTOGRAM_BINS; bin++)
+    into->bins[bin] += from->bins[bin];
+}
+
+/* Both lists are in order of time and hold the first ones, so the result holds the first of all. */
+static void merge_misses(stic_timing *into, const stic_timing *from)
+{
+  const stic_timing *const of[2] = {into, from};
+  stic_miss merged[STIC_MISSES_MAX];
+  int at[2] = {0, 0}, count = 0;
+
+  while (count < STIC_MISSES_MAX && (at[0] < into->miss_count || at[1] < from->miss_count)) {
+    const bool first = at[1] == from->miss_count ||
+                       (at[0] < into->miss_count && into->misses[at[0]].at_ns <= from->misses[at[1]].at_ns);
+    const int which = first ? 0 : 1;
+
+    merged[count++] = of[which]->misses[at[which]++];
+  }
+  memcpy(into->misses, merged, (size_t)count * sizeof merged[0]);
+  into->miss_count = count;
+}
+
+void stic_timing_merge(stic_timing *into, const stic_timing *from)
+{
+  into->missed += from->missed;
+  for (int i = 0; i < STIC_DEVICE_RATES; i++)
+    into->over[i] += from->over[i];
+  merge_misses(into, from);
+  for (int i = 0; i < from->count_count; i++)
+    stic_timing_count(into, from->counts[i].name, from->counts[i].value);
+  for (int i = 0; i < STIC_STAGE_COUNT; i++)
+    merge_histogram(&into->stages[i], &from->stages[i]);
 }
 
 /* The processor's name as /proc/cpuinfo has it, "" elsewhere. */
@@ -140,17 +218,35 @@ static json_t *stage_json(const stic_histogram *h)
                    (json_int_t)stic_histogram_quantile(h, 0.999), "max_ns", (json_int_t)h->max_ns);
 }
 
+static json_t *misses_json(const stic_timing *timing)
+{
+  json_t *list = json_array();
+
+  for (int i = 0; i < timing->miss_count; i++) {
+    const stic_miss *miss = &timing->misses[i];
+
+    json_array_append_new(list, json_pack("{s:f, s:I, s:s}", "t", (double)miss->at_ns / NS_PER_S, "ns",
+                                          (json_int_t)miss->ns, "why", miss->why));
+  }
+  return list;
+}
+
 static json_t *timing_json(const stic_timing *timing, double seconds, const char *scheduling)
 {
   static const char *const names[] = {"read", "collide", "solve", "render", "encode", "write", "frame"};
-  json_t *stages = json_object();
+  json_t *stages = json_object(), *over = json_object(), *counts = json_object();
   char machine[512];
 
   for (int i = 0; i <= STIC_STAGE_FRAME; i++)
     json_object_set_new(stages, names[i], stage_json(&timing->stages[i]));
-  return json_pack("{s:I, s:f, s:i, s:I, s:o, s:o, s:s, s:s}", "frames",
+  for (int i = 0; i < STIC_DEVICE_RATES; i++)
+    json_object_set_new(over, rates[i].name, json_integer(timing->over[i]));
+  for (int i = 0; i < timing->count_count; i++)
+    json_object_set_new(counts, timing->counts[i].name, json_integer(timing->counts[i].value));
+  return json_pack("{s:I, s:f, s:i, s:I, s:o, s:o, s:o, s:o, s:o, s:s, s:s}", "frames",
                    (json_int_t)timing->stages[STIC_STAGE_FRAME].count, "seconds", seconds, "target_hz",
-                   STIC_TARGET_HZ, "missed", (json_int_t)timing->missed, "stages", stages, "wakeup",
+                   STIC_TARGET_HZ, "missed", (json_int_t)timing->missed, "misses", misses_json(timing),
+                   "over_hz", over, "counts", counts, "stages", stages, "wakeup",
                    stage_json(&timing->stages[STIC_STAGE_WAKEUP]), "machine",
                    stic_machine_text(machine, sizeof machine), "scheduling", scheduling);
 }

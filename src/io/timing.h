@@ -46,8 +46,30 @@ typedef enum stic_stage {
   STIC_STAGE_COUNT
 } stic_stage;
 
+#define STIC_DEVICE_RATES 4 /* 50, 62.5, 125, 250 Hz: those of trackers */
+#define STIC_MISSES_MAX 32  /* listed one by one */
+#define STIC_COUNTS_MAX 12
+
+/* A deadline of 1/31 s that was missed. */
+typedef struct stic_miss {
+  int64_t at_ns;   /* since the run's start */
+  int64_t ns;      /* how long it took */
+  const char *why; /* "computing", "wakeup"; a literal */
+} stic_miss;
+
+/* A number of the run's. */
+typedef struct stic_count {
+  const char *name; /* a literal */
+  int64_t value;
+} stic_count;
+
 typedef struct stic_timing {
-  int64_t missed; /* frames longer than 1/31 s */
+  int64_t missed;                  /* frames longer than 1/31 s */
+  int64_t over[STIC_DEVICE_RATES]; /* frames longer than the periods of those rates */
+  int miss_count;                  /* of `misses`: the first ones */
+  stic_miss misses[STIC_MISSES_MAX];
+  int count_count;
+  stic_count counts[STIC_COUNTS_MAX];
   stic_histogram stages[STIC_STAGE_COUNT];
 } stic_timing;
 
@@ -56,6 +78,21 @@ stic_timing *stic_timing_create(void);
 
 /* Adds to a stage; STIC_STAGE_FRAME also counts what missed 1/31 s. `timing` NULL: nothing. Real-time: yes. */
 void stic_timing_add(stic_timing *timing, stic_stage stage, int64_t ns);
+
+/* Adds the simulation's last step to its stages; returns how long it took. Real-time: yes. */
+int64_t stic_timing_add_step(stic_timing *timing, const stic_sim *sim);
+
+/* Lists a missed deadline; what is too much for the list is left out. Real-time: yes. */
+void stic_timing_list_miss(stic_timing *timing, int64_t at_ns, int64_t ns, const char *why);
+
+/* A number that the summary tells under that name (a literal). At most STIC_COUNTS_MAX. */
+void stic_timing_count(stic_timing *timing, const char *name, int64_t value);
+
+/* Adds what another thread has measured; misses stay in order of time. Real-time: no. */
+void stic_timing_merge(stic_timing *into, const stic_timing *from);
+
+/* The rate in Hz that over[index] is about. */
+double stic_timing_rate(int index);
 
 /* "x86_64, <processor>, Linux 6.1": what the numbers hold for. Returns out. Real-time: no. */
 const char *stic_machine_text(char *out, size_t out_size);

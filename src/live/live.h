@@ -85,8 +85,8 @@ typedef struct stic_live_report {
   stic_error picture_error; /* the same */
   int64_t rows;             /* solved; all of them written unless output_error */
   int64_t repeated;         /* of them with the last pose again */
-  int64_t lost_samples;  /* given by the device when the solver's queue was full, or not solved at the end */
-  int64_t late_pictures; /* results that were given to the pictures as late, or not at all */
+  int64_t lost_samples;   /* given by the device when the solver's queue was full, or not solved at the end */
+  int64_t unseen_results; /* not given to the pictures, whose queue was full */
   size_t samples_most, rows_most, pictures_most; /* that waited in the queues */
   char scheduling[300];                          /* what the threads got and why not more */
 } stic_live_report;
@@ -94,8 +94,8 @@ typedef struct stic_live_report {
 typedef struct stic_live stic_live;
 
 /* Allocates all that the loop will use, opens the pictures and starts the threads. `*live` is NULL on failure and
- * nothing runs then. The caller owns it. Errors: STIC_NO_MEMORY, STIC_FAILED (no thread). A failed
- * pictures->open() is no failure of the loop; stic_live_report tells it. Real-time: no. */
+ * nothing runs then. The caller owns it. Errors: STIC_NO_MEMORY, STIC_FAILED (no thread, no pipe), those of
+ * pictures->open(). Real-time: no. */
 stic_status stic_live_start(const stic_live_settings *settings, stic_live **live, stic_error *err);
 
 /* Whether the loop goes on; false once it has ended by itself or was told to stop. Any thread. Real-time: yes. */
