@@ -22,6 +22,8 @@ fi
 
 configure_and_build ci-clang
 configure_and_build asan
+configure_and_build tsan
+ctest --preset tsan -L live -j "$(nproc)"
 ctest --preset asan -L 'unit|invariants|files|cli|driver' -LE 'slow' -j "$(nproc)"
 configure_and_build ci
 ctest --preset ci -j "$(nproc)"

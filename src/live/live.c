@@ -35,13 +35,14 @@ static void destroy(stic_live *live)
 
 static stic_status make_queues(stic_live *live, const stic_live_settings *s, stic_error *err)
 {
+  const size_t samples = s->queue_samples > 0 ? s->queue_samples : STIC_LIVE_SAMPLES;
   const size_t rows = s->queue_rows > 0 ? s->queue_rows : STIC_LIVE_ROWS;
   stic_status status = stic_wake_create(&live->to_solver, err);
 
   if (status == STIC_OK)
     status = stic_wake_create(&live->to_caller, err);
   if (status == STIC_OK)
-    status = stic_ring_create(sizeof(live_sample), STIC_LIVE_SAMPLES, &live->samples, err);
+    status = stic_ring_create(sizeof(live_sample), samples, &live->samples, err);
   if (status == STIC_OK)
     status = stic_ring_create(sizeof(live_row), rows, &live->rows, err);
   if (status == STIC_OK && s->events)

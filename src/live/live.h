@@ -57,7 +57,8 @@ typedef struct stic_live_settings {
   bool events;                 /* rows carry their events, default false */
   stic_live_output output;
   const stic_live_pictures *pictures; /* NULL (default): none */
-  size_t queue_rows;                  /* rows that may wait for the writer; 0 (default): 65536 */
+  size_t queue_samples;               /* that may wait for the solver; 0 (default): 131072 */
+  size_t queue_rows;                  /* that may wait for the writer; 0 (default): 65536 */
 } stic_live_settings;
 
 /* ---- what can be seen while it runs -------------------------------------------------------- */
