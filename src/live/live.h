@@ -35,7 +35,7 @@ typedef struct stic_live_output {
   void *user;
   /* Writes a row: STIC_OK, or the run ends with that error and no further row is written. */
   stic_status (*row)(void *user, const stic_live_row *row, stic_error *err);
-  /* Nothing waits any more: what is buffered may go out. As row(). */
+  /* Now and then, and when nothing waits any more: what is buffered may go out. As row(). */
   stic_status (*flush)(void *user, stic_error *err);
 } stic_live_output;
 

@@ -70,7 +70,6 @@ typedef struct live_solver {
 
 typedef struct live_writer {
   stic_live_output output;
-  bool unflushed;
   stic_event *gathered; /* events of one row */
   stic_live_row row;
   stic_error error;

@@ -4,6 +4,8 @@
 #include "../error.h"
 #include "parts.h"
 
+#define ROWS_PER_FLUSH 64
+
 /* Until there is something in the queue; false: nothing comes any more. */
 static bool wait_for_item(const stic_live *live, stic_ring *ring)
 {
@@ -55,7 +57,7 @@ void *stic_live_writer_main(void *context)
   stic_status status = STIC_OK;
 
   while (status == STIC_OK && wait_for_item(live, live->rows)) {
-    while (status == STIC_OK && stic_ring_front(live->rows))
+    for (int i = 0; i < ROWS_PER_FLUSH && status == STIC_OK && stic_ring_front(live->rows); i++)
       status = write_next(live);
     if (status == STIC_OK)
       status = w->output.flush(w->output.user, &w->error);

@@ -255,6 +255,42 @@ static void test_frames(void **state)
     0, "");
 }
 
+/* One picture per 1/31 s of the run, whether it was drawn or dropped. */
+static void test_run_frames(void **state)
+{
+  const char *folder = stic_test_path("run-frames"), *log = stic_test_path("run-frames.csv");
+  const char *const arguments[] = {"run",   scene, "--device", "sample:rate=100", "--frames", folder,
+                                   "--log", log,   "--size",   "160x120",         NULL};
+  char *text, path[300];
+  double first, last;
+  pid_t child;
+  int pictures;
+
+  (void)state;
+  child = stic_test_start(NULL, arguments);
+  pause_ms(2500);
+  kill(child, SIGINT);
+  assert_int_equal(stic_test_wait(child), 0);
+  text = stic_test_read(log);
+  first = strtod(strchr(strstr(text, "\nt,state") + 1, '\n'), NULL);
+  text[strlen(text) - 1] = '\0';
+  last = strtod(strrchr(text, '\n'), NULL);
+  pictures = (int)((last - first) * 31) + 1;
+  snprintf(path, sizeof path, "%s/frame_%06d.png", folder, pictures - 1);
+  assert_int_equal(access(path, F_OK), 0);
+  snprintf(path, sizeof path, "%s/frame_%06d.png", folder, pictures);
+  assert_int_equal(access(path, F_OK), -1);
+  free(text);
+  text = stic_test_read(stic_test_path("err"));
+  snprintf(path, sizeof path, "%d pictures, ", pictures);
+  stic_test_contains(text, path);
+  free(text);
+  /* Refused before the first sample. */
+  expect(stic_test_program("run", scene, "--device", "sample", "--frames", folder, NULL), 5, "--force");
+  expect(stic_test_program("run", scene, "--device", "sample", "--video", stic_test_path("v.avi"), NULL), 2,
+         "");
+}
+
 static void test_bench(void **state)
 {
   const stic_test_run *run;
@@ -273,8 +309,8 @@ int main(void)
     cmocka_unit_test(test_bad_files),      cmocka_unit_test(test_outputs),
     cmocka_unit_test(test_signal_replay),  cmocka_unit_test(test_signal_run),
     cmocka_unit_test(test_run_and_replay), cmocka_unit_test(test_standard_streams),
-    cmocka_unit_test(test_closed_pipe),    cmocka_unit_test(test_frames),
-    cmocka_unit_test(test_bench),
+    cmocka_unit_test(test_closed_pipe),    cmocka_unit_test(test_run_frames),
+    cmocka_unit_test(test_frames),         cmocka_unit_test(test_bench),
   };
 
   return cmocka_run_group_tests(tests, set_up, stic_test_clean_up);
