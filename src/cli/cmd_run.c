@@ -164,13 +164,17 @@ static void count_all(run *r, const stic_live_report *report)
 
 static void tell_times(const stic_timing *t)
 {
-  const stic_histogram *frame = &t->stages[STIC_STAGE_FRAME];
+  const stic_histogram *frame = &t->stages[STIC_STAGE_FRAME], *latency = &t->stages[STIC_STAGE_LATENCY];
 
   stic_cli_say(
     "computing p50 %.1f us, p99 %.1f us, max %.1f us; %lld of %lld over 1/%d s; woke late p99 %.1f us",
     (double)stic_histogram_quantile(frame, 0.5) / 1e3, (double)stic_histogram_quantile(frame, 0.99) / 1e3,
     (double)frame->max_ns / 1e3, (long long)t->missed, (long long)frame->count, STIC_TARGET_HZ,
     (double)stic_histogram_quantile(&t->stages[STIC_STAGE_WAKEUP], 0.99) / 1e3);
+  if (latency->count > 0)
+    stic_cli_say("from measurement to result p50 %.1f us, p99 %.1f us, max %.1f us",
+                 (double)stic_histogram_quantile(latency, 0.5) / 1e3,
+                 (double)stic_histogram_quantile(latency, 0.99) / 1e3, (double)latency->max_ns / 1e3);
   for (int i = 0; i < STIC_DEVICE_RATES; i++) {
     if (t->over[i] > t->missed)
       stic_cli_say("%lld over 1/%g s", (long long)t->over[i], stic_timing_rate(i));

@@ -243,11 +243,12 @@ static json_t *timing_json(const stic_timing *timing, double seconds, const char
     json_object_set_new(over, rates[i].name, json_integer(timing->over[i]));
   for (int i = 0; i < timing->count_count; i++)
     json_object_set_new(counts, timing->counts[i].name, json_integer(timing->counts[i].value));
-  return json_pack("{s:I, s:f, s:i, s:I, s:o, s:o, s:o, s:o, s:o, s:s, s:s}", "frames",
+  return json_pack("{s:I, s:f, s:i, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:s, s:s}", "frames",
                    (json_int_t)timing->stages[STIC_STAGE_FRAME].count, "seconds", seconds, "target_hz",
                    STIC_TARGET_HZ, "missed", (json_int_t)timing->missed, "misses", misses_json(timing),
                    "over_hz", over, "counts", counts, "stages", stages, "wakeup",
-                   stage_json(&timing->stages[STIC_STAGE_WAKEUP]), "machine",
+                   stage_json(&timing->stages[STIC_STAGE_WAKEUP]), "latency",
+                   stage_json(&timing->stages[STIC_STAGE_LATENCY]), "machine",
                    stic_machine_text(machine, sizeof machine), "scheduling", scheduling);
 }
 

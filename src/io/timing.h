@@ -41,8 +41,9 @@ typedef enum stic_stage {
   STIC_STAGE_RENDER,
   STIC_STAGE_ENCODE,
   STIC_STAGE_WRITE,
-  STIC_STAGE_FRAME,  /* one whole turn of the loop, without waiting */
-  STIC_STAGE_WAKEUP, /* how late the loop woke; no part of a frame */
+  STIC_STAGE_FRAME,   /* one whole turn of the loop, without waiting */
+  STIC_STAGE_WAKEUP,  /* how late the loop woke; no part of a frame */
+  STIC_STAGE_LATENCY, /* from the measurement of a sample to its result */
   STIC_STAGE_COUNT
 } stic_stage;
 

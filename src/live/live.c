@@ -252,7 +252,7 @@ static void tell_overflow(const stic_live *live, stic_error *err)
 {
   stic_error_set(
     err, STIC_CANNOT_WRITE, NULL, 0,
-    "the output is too slow: %zu rows wait for it, which is all that may; the run ends after them",
+    "the output is too slow: %zu rows wait for it and the queue is full; the run ends after them",
     stic_ring_most(live->rows));
 }
 

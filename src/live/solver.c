@@ -109,7 +109,11 @@ static bool solve_sample(stic_live *live, const live_sample *sample)
     s->last.sample.t_ns = last_ns + 1;
   s->begun = true;
   s->deadline_ns = sample->arrived_ns + STIC_FRAME_NS;
-  return solve(live);
+  if (!solve(live))
+    return false;
+  if (!s->own_time)
+    stic_timing_add(&s->timing, STIC_STAGE_LATENCY, stic_clock_ns() - sample->zero_ns - sample->sample.t_ns);
+  return true;
 }
 
 /* The last pose again, at the time of the deadline; those that passed meanwhile are not made up for, and the next

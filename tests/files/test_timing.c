@@ -91,10 +91,44 @@ static void test_summary(void **state)
   free(timing);
 }
 
+/* What two threads measured is one summary: counts add, the first misses of both are listed in order of time. */
+static void test_merge(void **state)
+{
+  stic_timing *a = stic_timing_create(), *b = stic_timing_create();
+  char *text;
+
+  (void)state;
+  stic_timing_add(a, STIC_STAGE_FRAME, 4000001);
+  stic_timing_add(b, STIC_STAGE_FRAME, 40000000);
+  stic_timing_count(b, "apples", 7);
+  for (int i = 0; i < STIC_MISSES_MAX + 3; i++) {
+    stic_timing_list_miss(a, 2 * i, 1000 + i, "computing");
+    stic_timing_list_miss(b, 2 * i + 1, 1000 + i, "wakeup");
+  }
+  stic_timing_merge(a, b);
+  assert_int_equal(a->missed, 1);
+  assert_int_equal(a->over[0], 1);
+  assert_int_equal(a->over[3], 2);
+  assert_true(stic_timing_rate(3) == 250);
+  assert_int_equal(a->stages[STIC_STAGE_FRAME].count, 2);
+  assert_int_equal(a->stages[STIC_STAGE_FRAME].max_ns, 40000000);
+  assert_int_equal(a->miss_count, STIC_MISSES_MAX);
+  for (int i = 0; i < STIC_MISSES_MAX; i++)
+    assert_int_equal(a->misses[i].at_ns, i);
+  assert_int_equal(stic_timing_write(a, 1, "", stic_test_path("m.json"), NULL), STIC_OK);
+  text = stic_test_read(stic_test_path("m.json"));
+  stic_test_contains(text, "\"apples\": 7");
+  stic_test_contains(text, "\"62.5\": 1");
+  stic_test_contains(text, "\"why\": \"wakeup\"");
+  free(text);
+  free(a);
+  free(b);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_quantiles), cmocka_unit_test(test_bounds),
-                                     cmocka_unit_test(test_summary)};
+                                     cmocka_unit_test(test_merge), cmocka_unit_test(test_summary)};
 
   return cmocka_run_group_tests(tests, NULL, stic_test_clean_up);
 }
