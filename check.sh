@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "$0")"
 . .ci/packages.sh
 
-need build run video devices test
+need build run video devices view test
 
 configure_and_build() { # preset
   cmake --preset "$1" >"build-$1.log" 2>&1 || { cat "build-$1.log"; return 1; }

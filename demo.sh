@@ -4,7 +4,7 @@ set -euo pipefail
 cd "$(dirname "$0")"
 . .ci/packages.sh
 
-need build run video devices
+need build run video devices view
 [ -f build/CMakeCache.txt ] || cmake -S . -B build -DSTICTION_TESTS=OFF >/dev/null
 cmake --build build --target stiction_program -j "$(nproc)" | tail -n 1
 

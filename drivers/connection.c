@@ -137,6 +137,11 @@ static void add_counters(stic_device_counters *sum, const stic_device_counters *
   sum->reconnects += part->reconnects;
 }
 
+stic_device *stic_supervisor_device(const stic_supervisor *s)
+{
+  return s->device;
+}
+
 stic_device_counters stic_supervisor_counters(const stic_supervisor *s)
 {
   stic_device_counters sum = s->closed;

@@ -113,6 +113,7 @@ struct stic_driver {
   stic_silence silence;
   int64_t silence_ns; /* how long a silence means that; 0: never */
   bool own_time;      /* source_ns, not the time of arrival, is the samples' time */
+  bool in_room;       /* poses are the hand's in the scene: no tracker frame or filter applies */
 
   /* Whether this driver is for the device, as far as ids and names tell: a serial port may be for any serial
    * tracker. No I/O. NULL: no device of the system's, opened by name alone. */

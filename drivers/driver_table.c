@@ -4,6 +4,7 @@
 #include "gamepad/gamepad_driver.h"
 #include "hydra/hydra_driver.h"
 #include "logitech/logitech_driver.h"
+#include "mouse/mouse_driver.h"
 #include "sample/sample_driver.h"
 #include "spacemouse/spacemouse_driver.h"
 #include "trace/trace_driver.h"
@@ -14,8 +15,8 @@
 
 /* In the order in which they are listed and asked to match. */
 static const stic_driver *const drivers[] = {
-  &stic_spacemouse_driver, &stic_hydra_driver,    &stic_gamepad_driver,
-  &stic_trace_driver,      &stic_logitech_driver, &stic_sample_driver,
+  &stic_spacemouse_driver, &stic_hydra_driver, &stic_gamepad_driver, &stic_logitech_driver,
+  &stic_mouse_driver,      &stic_trace_driver, &stic_sample_driver,
 };
 
 #define DRIVER_COUNT ((int)(sizeof drivers / sizeof drivers[0]))

@@ -388,7 +388,7 @@ static void ring(const actors *a, unsigned id, double x, double y, int at, doubl
 static void draw_hand(const actors *a)
 {
   const stic_result *r = a->now;
-  double ball[3] = {r->hand_x, r->hand_y, layer(a, 8) + 0.05 * a->size}, arm = 0.15 * a->size, pixel[2];
+  double ball[3] = {r->hand_x, r->hand_y, stic_view_hand_z(a->view, r)}, arm = 0.15 * a->size, pixel[2];
   double tip[3] = {ball[0] + arm * cos(r->hand_theta), ball[1] + arm * sin(r->hand_theta), ball[2]};
   const double bar[2][3] = {{ball[0], ball[1], ball[2]}, {tip[0], tip[1], tip[2]}};
 
@@ -554,7 +554,7 @@ void stic_actors_build(const stic_view *view, const stic_history *history, stic_
               .mesh = mesh,
               .labels = labels,
               .size = view->size,
-              .z = r->z + view->scene->depth / 2 + 0.01 * view->size,
+              .z = stic_view_face_z(view, r),
               .body = {cos(r->theta), sin(r->theta), r->x, r->y}};
   double holding[2];
 
@@ -567,8 +567,10 @@ void stic_actors_build(const stic_view *view, const stic_history *history, stic_
   }
   draw_object(&a);
   stic_mesh_begin(mesh, STIC_DRAW_ON_TOP, STIC_ID_NONE);
-  trail(&a, STIC_ID_TRAIL_OBJECT, false, view->theme->outline);
-  trail(&a, STIC_ID_TRAIL_HAND, true, view->theme->hand);
+  if (!view->no_trails) {
+    trail(&a, STIC_ID_TRAIL_OBJECT, false, view->theme->outline);
+    trail(&a, STIC_ID_TRAIL_HAND, true, view->theme->hand);
+  }
   if (r->state != STIC_RELEASED) {
     if (r->contact_count)
       draw_ghost(&a);

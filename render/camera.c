@@ -14,6 +14,14 @@ void stic_camera_project(const stic_camera *c, const double point[3], double pix
   pixel[1] = c->height / 2.0 + c->shift[1] - c->focal * (point[1] - c->eye[1]) / distance;
 }
 
+void stic_camera_unproject(const stic_camera *c, const double pixel[2], double z, double point[2])
+{
+  double size = (c->eye[2] - z) / c->focal;
+
+  point[0] = c->eye[0] + size * (pixel[0] - c->width / 2.0 - c->shift[0]);
+  point[1] = c->eye[1] - size * (pixel[1] - c->height / 2.0 - c->shift[1]);
+}
+
 double stic_camera_pixel_size(const stic_camera *c, const double point[3])
 {
   return (c->eye[2] - point[2]) / c->focal;

@@ -26,6 +26,9 @@ void stic_camera_matrix(const stic_camera *camera, const double origin[3], doubl
 /* Where a point appears, px. The point must be in front of the camera. */
 void stic_camera_project(const stic_camera *camera, const double point[3], double pixel[2]);
 
+/* The other way round: the point (x, y) at depth z that appears at a pixel. */
+void stic_camera_unproject(const stic_camera *camera, const double pixel[2], double z, double point[2]);
+
 /* The size of a pixel at a point, m. */
 double stic_camera_pixel_size(const stic_camera *camera, const double point[3]);
 

@@ -193,6 +193,46 @@ void stic_render_set_note(stic_render *r, const char *note)
   snprintf(r->hud.note, sizeof r->hud.note, "%s", note ? note : "");
 }
 
+void stic_render_set_trails(stic_render *r, bool shown)
+{
+  r->view.no_trails = !shown;
+}
+
+void stic_render_continue(stic_render *r, const stic_render *from)
+{
+  r->history = from->history;
+  stic_view_continue(&r->view, &from->view);
+}
+
+void stic_render_forget(stic_render *r)
+{
+  memset(&r->history, 0, sizeof r->history);
+  r->history.size = r->view.size;
+}
+
+stic_rect stic_render_scene_area(const stic_render *r)
+{
+  return (stic_rect){0, r->hud.view_top, r->view.width, r->hud.view_bottom};
+}
+
+void stic_render_ray(const stic_render *r, const double pixel[2], double eye[3], double through[3])
+{
+  const double at[2] = {fmin(fmax(pixel[0], 0), r->view.width),
+                        fmin(fmax(pixel[1] - r->hud.view_top, 0), r->view.height)};
+
+  memcpy(eye, r->view.camera.eye, sizeof r->view.camera.eye);
+  through[2] = stic_view_hand_z(&r->view, &r->history.newest);
+  stic_camera_unproject(&r->view.camera, at, through[2], through);
+}
+
+void stic_render_hand_pixel(const stic_render *r, double pixel[2])
+{
+  const stic_result *now = &r->history.newest;
+
+  stic_view_project(&r->view, now->hand_x, now->hand_y, stic_view_hand_z(&r->view, now), pixel);
+  pixel[1] += r->hud.view_top;
+}
+
 stic_render_times stic_render_last_times(const stic_render *r)
 {
   return r->times;

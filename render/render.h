@@ -6,6 +6,7 @@
 
 #include <stdint.h>
 
+#include "canvas.h"
 #include "gl.h"
 #include "stiction.h"
 
@@ -112,6 +113,25 @@ stic_status stic_render_draw(stic_render *render, stic_image *image, stic_error 
 /* Draws a line of text into the lower left corner of the view of the following pictures, for clock values that
  * pictures otherwise never show; NULL or "" (the default): none. At most 63 bytes are copied. */
 void stic_render_set_note(stic_render *render, const char *note);
+
+/* Whether the trails of hand and object are drawn; default true. */
+void stic_render_set_trails(stic_render *render, bool shown);
+
+/* Takes over from a renderer of the same scene what it has observed, how far its camera had stepped back and its
+ * scale of forces: for a picture of another size or look. Before the first stic_render_draw(). */
+void stic_render_continue(stic_render *render, const stic_render *from);
+
+/* Forgets everything that was observed. */
+void stic_render_forget(stic_render *render);
+
+/* The part of the picture that shows the scene, px; nothing moves outside it but the head-up display. */
+stic_rect stic_render_scene_area(const stic_render *render);
+
+/* What is seen at a pixel (kept inside the scene's area) of the last picture: the ray from the eye through a point
+ * at the depth at which the hand is drawn, m. */
+void stic_render_ray(const stic_render *render, const double pixel[2], double eye[3], double through[3]);
+/* The pixel at which the last picture has the hand. */
+void stic_render_hand_pixel(const stic_render *render, double pixel[2]);
 
 /* CPU time of the last stic_render_draw(). */
 stic_render_times stic_render_last_times(const stic_render *render);

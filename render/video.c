@@ -2,9 +2,9 @@
 #include "video.h"
 
 #include "error.h"
+#include "module.h"
 #include "video_module.h"
 
-#include <dlfcn.h>
 #include <stdlib.h>
 
 struct stic_video {
@@ -13,38 +13,24 @@ struct stic_video {
   stic_video_writer *writer;
 };
 
+static void *open_module(const stic_video_module **module)
+{
+  void *library = NULL;
+
 #if defined(STIC_WITH_LIBAV)
-
-/* Beside the program while it is in its build folder, else where it was installed: both are in its run path. */
-static void *open_module(const stic_video_module **module)
-{
-  void *library = dlopen(STIC_VIDEO_MODULE_FILE, RTLD_NOW | RTLD_LOCAL);
-
-  *module = library ? dlsym(library, "stic_video_libav") : NULL;
-  if (*module && (*module)->version == STIC_VIDEO_MODULE)
-    return library;
-  if (library)
-    dlclose(library);
-  return NULL;
-}
-
+  *module = stic_module_load(STIC_VIDEO_MODULE_FILE, "stic_video_libav", STIC_VIDEO_MODULE, &library);
 #else
-
-static void *open_module(const stic_video_module **module)
-{
   *module = NULL;
-  return NULL;
-}
-
 #endif
+  return library;
+}
 
 bool stic_video_available(void)
 {
   const stic_video_module *module;
   void *library = open_module(&module);
 
-  if (library)
-    dlclose(library);
+  stic_module_unload(library);
   return library != NULL;
 }
 
@@ -93,7 +79,6 @@ void stic_video_destroy(stic_video *v)
     return;
   if (v->writer)
     v->module->destroy(v->writer);
-  if (v->library)
-    dlclose(v->library);
+  stic_module_unload(v->library);
   free(v);
 }

@@ -398,6 +398,25 @@ bool stic_view_init(stic_view *v, const stic_scene *scene, const stic_render_set
   return true;
 }
 
+void stic_view_continue(stic_view *v, const stic_view *from)
+{
+  memcpy(v->low, from->low, sizeof v->low);
+  memcpy(v->high, from->high, sizeof v->high);
+  v->force_full = from->force_full;
+  v->no_trails = from->no_trails;
+  reframe(v);
+}
+
+double stic_view_face_z(const stic_view *v, const stic_result *r)
+{
+  return r->z + v->scene->depth / 2 + 0.01 * v->size;
+}
+
+double stic_view_hand_z(const stic_view *v, const stic_result *r)
+{
+  return stic_view_face_z(v, r) + 0.082 * v->size;
+}
+
 void stic_view_free(stic_view *v)
 {
   free(v->slabs);

@@ -57,6 +57,7 @@ typedef struct stic_view {
   int grid_major;         /* every so many lines one is stronger and has its number */
   double force_full;      /* N, drawn force_length m long; only ever grows */
   double force_length;    /* m */
+  bool no_trails;         /* trails are left out */
   int slab_count;
   stic_slab *slabs; /* owned, one per surface */
 } stic_view;
@@ -68,6 +69,13 @@ void stic_view_free(stic_view *view);
 
 /* Makes room for a result: true if the camera had to change, so that nothing drawn before fits. */
 bool stic_view_include(stic_view *view, const stic_result *result);
+
+/* Takes over what another view of the same scene has in sight, and its scale of forces. */
+void stic_view_continue(stic_view *view, const stic_view *from);
+
+/* The depths of the object's drawn face and of the hand's ball, which is in front of everything. */
+double stic_view_face_z(const stic_view *view, const stic_result *result);
+double stic_view_hand_z(const stic_view *view, const stic_result *result);
 
 /* Adds to labels what stays: numbers along the grid. */
 void stic_stage_labels(const stic_view *view, stic_labels *labels);

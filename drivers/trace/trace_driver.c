@@ -198,6 +198,7 @@ const stic_driver stic_trace_driver = {
   .silence = STIC_SILENCE_STALE,
   .silence_ns = 0, /* pauses of a recording are part of it */
   .own_time = true,
+  .in_room = true, /* a trace is a hand in the room already */
   .match = NULL,
   .open = trace_open,
   .poll = trace_poll,

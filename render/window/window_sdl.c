@@ -1,0 +1,233 @@
+/* The module that opens a window, by SDL 2. */
+#include "window_module.h"
+
+#include "error.h"
+
+#include <SDL.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct stic_window {
+  SDL_Window *window;
+  SDL_Renderer *renderer;
+  SDL_Texture *texture; /* of the last picture's size; NULL before the first */
+  int width, height;    /* px, of the texture */
+};
+
+static void window_close(stic_window *w)
+{
+  if (!w)
+    return;
+  if (w->texture)
+    SDL_DestroyTexture(w->texture);
+  if (w->renderer)
+    SDL_DestroyRenderer(w->renderer);
+  if (w->window)
+    SDL_DestroyWindow(w->window);
+  SDL_QuitSubSystem(SDL_INIT_VIDEO);
+  free(w);
+}
+
+/* Pictures come from the CPU: on X11 the shortest way to the screen is shared memory, and no second OpenGL is
+ * loaded into the program. Elsewhere SDL knows best. */
+static SDL_Renderer *create_renderer(SDL_Window *window)
+{
+  const char *driver = SDL_GetCurrentVideoDriver();
+
+  if (driver && strcmp(driver, "x11") == 0) {
+    SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
+    return SDL_CreateRenderer(window, -1, SDL_RENDERER_SOFTWARE);
+  }
+  return SDL_CreateRenderer(window, -1, 0);
+}
+
+static stic_status window_open(const char *title, int width, int height, stic_window **window,
+                               stic_error *err)
+{
+  stic_window *w = calloc(1, sizeof *w);
+
+  *window = NULL;
+  if (!w)
+    return stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
+  SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1"); /* the program has its own */
+  SDL_SetHint(SDL_HINT_VIDEO_X11_NET_WM_BYPASS_COMPOSITOR, "0");
+  SDL_SetHint(SDL_HINT_MOUSE_FOCUS_CLICKTHROUGH, "1");
+  if (SDL_InitSubSystem(SDL_INIT_VIDEO) == 0) {
+    SDL_StopTextInput();
+    w->window = SDL_CreateWindow(title, SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED, width, height,
+                                 SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI);
+  }
+  if (w->window)
+    w->renderer = create_renderer(w->window);
+  if (!w->renderer) {
+    stic_error_set(err, STIC_CANNOT_WRITE, NULL, 0,
+                   "cannot open a window: %s; set DISPLAY or leave out --view", SDL_GetError());
+    window_close(w);
+    return STIC_CANNOT_WRITE;
+  }
+  SDL_SetWindowMinimumSize(w->window, STIC_PICTURE_WIDTH_MIN, STIC_PICTURE_HEIGHT_MIN);
+  *window = w;
+  return STIC_OK;
+}
+
+static void window_size(const stic_window *w, int *width, int *height)
+{
+  if (SDL_GetRendererOutputSize(w->renderer, width, height) != 0)
+    SDL_GetWindowSize(w->window, width, height);
+}
+
+/* ---- events ------------------------------------------------------------------------------ */
+
+/* Mouse coordinates are those of the desktop, which may be coarser than pixels. */
+static void set_place(const stic_window *w, int x, int y, stic_window_event *event)
+{
+  int width, height, wide, tall;
+
+  SDL_GetWindowSize(w->window, &width, &height);
+  window_size(w, &wide, &tall);
+  event->x = (x + 0.5) * wide / (width > 0 ? width : 1);
+  event->y = (y + 0.5) * tall / (height > 0 ? height : 1);
+}
+
+static void set_pointer(const stic_window *w, int x, int y, Uint32 buttons, stic_window_event *event)
+{
+  const SDL_Keymod mod = SDL_GetModState();
+
+  set_place(w, x, y, event);
+  event->buttons = (buttons & SDL_BUTTON_LMASK ? STIC_POINTER_LEFT : 0u) |
+                   (buttons & SDL_BUTTON_MMASK ? STIC_POINTER_MIDDLE : 0u) |
+                   (buttons & SDL_BUTTON_RMASK ? STIC_POINTER_RIGHT : 0u);
+  event->modifiers =
+    (mod & KMOD_SHIFT ? STIC_MODIFIER_SHIFT : 0u) | (mod & KMOD_CTRL ? STIC_MODIFIER_CTRL : 0u);
+}
+
+static void set_wheel(const SDL_MouseWheelEvent *wheel, stic_window_event *event)
+{
+  /* Some systems turn the wheel sideways while shift is down. */
+  event->wheel = (double)wheel->preciseY;
+  if (event->wheel == 0 && event->modifiers & STIC_MODIFIER_SHIFT)
+    event->wheel = (double)wheel->preciseX;
+  if (wheel->direction == SDL_MOUSEWHEEL_FLIPPED)
+    event->wheel = -event->wheel;
+}
+
+static bool set_window_event(const SDL_WindowEvent *window, stic_window_event *event)
+{
+  switch (window->event) {
+  case SDL_WINDOWEVENT_CLOSE: event->kind = STIC_WINDOW_CLOSE; return true;
+  case SDL_WINDOWEVENT_LEAVE: event->kind = STIC_WINDOW_LEAVE; return true;
+  case SDL_WINDOWEVENT_EXPOSED:
+  case SDL_WINDOWEVENT_SIZE_CHANGED:
+  case SDL_WINDOWEVENT_DISPLAY_CHANGED: event->kind = STIC_WINDOW_SHOWN; return true;
+  default: return false;
+  }
+}
+
+static bool set_key(const SDL_KeyboardEvent *key, stic_window_event *event)
+{
+  const SDL_Keycode code = key->keysym.sym;
+
+  if (key->repeat || key->keysym.mod & (KMOD_CTRL | KMOD_ALT | KMOD_GUI))
+    return false;
+  event->kind = STIC_WINDOW_KEY;
+  event->key = code == SDLK_ESCAPE ? STIC_KEY_ESCAPE
+               : code == SDLK_F1   ? STIC_KEY_F1
+               : code == SDLK_F11  ? STIC_KEY_F11
+                                   : (int)code;
+  return event->key > 0 && event->key <= STIC_KEY_F11;
+}
+
+/* False for what is of no concern. */
+static bool translate(const stic_window *w, const SDL_Event *from, stic_window_event *event)
+{
+  int x, y;
+
+  memset(event, 0, sizeof *event);
+  switch (from->type) {
+  case SDL_QUIT: event->kind = STIC_WINDOW_CLOSE; return true;
+  case SDL_WINDOWEVENT: return set_window_event(&from->window, event);
+  case SDL_KEYDOWN: return set_key(&from->key, event);
+  case SDL_MOUSEMOTION:
+    event->kind = STIC_WINDOW_MOTION;
+    set_pointer(w, from->motion.x, from->motion.y, from->motion.state, event);
+    return true;
+  case SDL_MOUSEBUTTONDOWN:
+  case SDL_MOUSEBUTTONUP:
+    event->kind = STIC_WINDOW_BUTTON;
+    set_pointer(w, from->button.x, from->button.y, SDL_GetMouseState(NULL, NULL), event);
+    return true;
+  case SDL_MOUSEWHEEL: {
+    const Uint32 buttons = SDL_GetMouseState(&x, &y);
+
+    event->kind = STIC_WINDOW_WHEEL;
+    set_pointer(w, x, y, buttons, event);
+    set_wheel(&from->wheel, event);
+    return event->wheel != 0;
+  }
+  default: return false;
+  }
+}
+
+static bool window_next(stic_window *w, int wait_ms, stic_window_event *event)
+{
+  SDL_Event from;
+
+  if (!SDL_WaitEventTimeout(&from, wait_ms))
+    return false;
+  do {
+    if (translate(w, &from, event))
+      return true;
+  } while (SDL_PollEvent(&from));
+  return false;
+}
+
+/* ---- pictures ---------------------------------------------------------------------------- */
+
+static bool make_texture(stic_window *w, const stic_image *image)
+{
+  if (w->texture && w->width == image->width && w->height == image->height)
+    return true;
+  if (w->texture)
+    SDL_DestroyTexture(w->texture);
+  w->texture = SDL_CreateTexture(w->renderer, SDL_PIXELFORMAT_RGBA32, SDL_TEXTUREACCESS_STREAMING,
+                                 image->width, image->height);
+  if (!w->texture)
+    return false;
+  SDL_SetTextureBlendMode(w->texture, SDL_BLENDMODE_NONE);
+  SDL_SetTextureScaleMode(w->texture, SDL_ScaleModeLinear);
+  w->width = image->width;
+  w->height = image->height;
+  return true;
+}
+
+static stic_status window_show(stic_window *w, const stic_image *image, stic_error *err)
+{
+  if (!make_texture(w, image) || SDL_UpdateTexture(w->texture, NULL, image->pixels, image->width * 4) != 0 ||
+      SDL_RenderCopy(w->renderer, w->texture, NULL, NULL) != 0)
+    return stic_error_set(err, STIC_CANNOT_WRITE, NULL, 0, "cannot draw into the window: %s", SDL_GetError());
+  SDL_RenderPresent(w->renderer);
+  return STIC_OK;
+}
+
+static void window_set_title(stic_window *w, const char *title)
+{
+  SDL_SetWindowTitle(w->window, title);
+}
+
+static void window_toggle_full_screen(stic_window *w)
+{
+  const bool full = (SDL_GetWindowFlags(w->window) & SDL_WINDOW_FULLSCREEN) != 0;
+
+  SDL_SetWindowFullscreen(w->window, full ? 0 : SDL_WINDOW_FULLSCREEN_DESKTOP);
+}
+
+const stic_window_module stic_window_sdl = {
+  .version = STIC_WINDOW_MODULE,
+  .open = window_open,
+  .next = window_next,
+  .size = window_size,
+  .show = window_show,
+  .set_title = window_set_title,
+  .toggle_full_screen = window_toggle_full_screen,
+  .close = window_close,
+};
