@@ -87,19 +87,19 @@ bool stic_mouse_feed(stic_device *device, const stic_mouse_hand *hand)
   return true;
 }
 
-/* Until the window has fed something; bytes are taken before samples, so that none is left without one. */
-static void wait_for_window(const mouse_device *d, int64_t until_ns)
+/* Until the window has fed something: false if not in time, or on a signal. Takes bytes that earlier samples have
+ * left as well, so the caller looks and, if need be, waits again. */
+static bool wait_for_window(const mouse_device *d, int64_t until_ns)
 {
   struct pollfd wake = {d->wake[0], POLLIN, 0};
-  int64_t left_ms = (until_ns - stic_clock_ns() + 999999) / 1000000;
+  const int64_t left_ms = (until_ns - stic_clock_ns() + 999999) / 1000000;
   char bytes[QUEUE];
 
-  if (left_ms < 0)
-    left_ms = 0;
-  if (left_ms > 60000)
-    left_ms = 60000;
-  while (poll(&wake, 1, (int)left_ms) > 0 && read(d->wake[0], bytes, sizeof bytes) == (ssize_t)sizeof bytes)
-    left_ms = 0;
+  if (left_ms <= 0 || poll(&wake, 1, left_ms < 60000 ? (int)left_ms : 60000) < 0)
+    return false;
+  while (read(d->wake[0], bytes, sizeof bytes) == (ssize_t)sizeof bytes)
+    continue;
+  return true;
 }
 
 static int mouse_poll(stic_device *device, int64_t until_ns, stic_device_sample *samples, int capacity)
@@ -108,8 +108,8 @@ static int mouse_poll(stic_device *device, int64_t until_ns, stic_device_sample 
   const stic_device_sample *front;
   int count = 0;
 
-  if (!stic_ring_front(d->samples))
-    wait_for_window(d, until_ns);
+  while (!stic_ring_front(d->samples) && wait_for_window(d, until_ns))
+    continue;
   while (count < capacity && (front = stic_ring_front(d->samples))) {
     samples[count++] = *front;
     stic_ring_take(d->samples);
