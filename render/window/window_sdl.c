@@ -28,19 +28,6 @@ static void window_close(stic_window *w)
   free(w);
 }
 
-/* Pictures come from the CPU: on X11 the shortest way to the screen is shared memory, and no second OpenGL is
- * loaded into the program. Elsewhere SDL knows best. */
-static SDL_Renderer *create_renderer(SDL_Window *window)
-{
-  const char *driver = SDL_GetCurrentVideoDriver();
-
-  if (driver && strcmp(driver, "x11") == 0) {
-    SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
-    return SDL_CreateRenderer(window, -1, SDL_RENDERER_SOFTWARE);
-  }
-  return SDL_CreateRenderer(window, -1, 0);
-}
-
 static stic_status window_open(const char *title, int width, int height, stic_window **window,
                                stic_error *err)
 {
@@ -49,6 +36,10 @@ static stic_status window_open(const char *title, int width, int height, stic_wi
   *window = NULL;
   if (!w)
     return stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
+  /* X11 (or XWayland): where SDL finds none it would draw on the bare console, or nowhere. And pictures come from
+   * the CPU: shared memory is their shortest way to the screen, without a second OpenGL in this thread. */
+  SDL_SetHint(SDL_HINT_VIDEODRIVER, "x11");
+  SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
   SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1"); /* the program has its own */
   SDL_SetHint(SDL_HINT_VIDEO_X11_NET_WM_BYPASS_COMPOSITOR, "0");
   SDL_SetHint(SDL_HINT_MOUSE_FOCUS_CLICKTHROUGH, "1");
@@ -58,7 +49,7 @@ static stic_status window_open(const char *title, int width, int height, stic_wi
                                  SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI);
   }
   if (w->window)
-    w->renderer = create_renderer(w->window);
+    w->renderer = SDL_CreateRenderer(w->window, -1, SDL_RENDERER_SOFTWARE);
   if (!w->renderer) {
     stic_error_set(err, STIC_CANNOT_WRITE, NULL, 0,
                    "cannot open a window: %s; set DISPLAY or leave out --view", SDL_GetError());

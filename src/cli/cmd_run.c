@@ -1,10 +1,12 @@
 /* stiction run: a device's samples through the solver in real time. */
+#include "../../drivers/mouse/mouse_driver.h"
 #include "../error.h"
 #include "../io/trace_csv.h"
 #include "../live/live.h"
 #include "cli.h"
 #include "run_pictures.h"
 #include "session.h"
+#include "viewer.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -37,6 +39,8 @@ typedef struct run {
   stic_trace_writer *recording; /* NULL: none asked for */
   stic_ring *news;
   stic_run_pictures *pictures;
+  stic_viewer *viewer; /* NULL: none asked for, or it failed */
+  int view_code;       /* why it failed */
 } run;
 
 /* ---- news of the connection ---------------------------------------------------------------- */
@@ -118,7 +122,31 @@ static int device_failure(const run *r, int result)
   }
 }
 
-/* Until the device ends, a signal comes or nothing can be written any more. */
+static bool is_mouse(const run *r)
+{
+  return stic_supervisor_driver(r->device) == &stic_mouse_driver;
+}
+
+/* One turn of the main thread; false when the user has closed the window, or is left without the mouse in it. */
+static bool look(run *r, stic_live *live)
+{
+  bool ended = false;
+  stic_error err;
+
+  if (!r->viewer) {
+    stic_live_wait(live, LOOK_NS);
+  } else if (stic_viewer_turn(r->viewer, stic_live_view(live), &ended, &err) != STIC_OK) {
+    /* Whoever holds a tracker goes on without the window. */
+    r->view_code = stic_cli_fail(&err);
+    stic_viewer_close(r->viewer);
+    r->viewer = NULL;
+    ended = is_mouse(r);
+  }
+  tell_news(r);
+  return !ended;
+}
+
+/* Until the device ends, a signal or the user ends it, or nothing can be written any more. */
 static stic_status loop(run *r, stic_live_report *report, stic_error *err)
 {
   const stic_live_pictures pictures = stic_run_pictures_calls(r->pictures, &r->session.scene);
@@ -135,10 +163,8 @@ static stic_status loop(run *r, stic_live_report *report, stic_error *err)
 
   if (status != STIC_OK)
     return status;
-  while (stic_live_runs(live) && stic_cli_signal() == 0) {
-    stic_live_wait(live, LOOK_NS);
-    tell_news(r);
-  }
+  while (stic_live_runs(live) && stic_cli_signal() == 0 && look(r, live))
+    ;
   stic_live_finish(live, r->session.timing, report);
   tell_news(r);
   return STIC_OK;
@@ -154,6 +180,8 @@ static void count_all(run *r, const stic_live_report *report)
   stic_timing_count(t, "lost_samples", report->lost_samples);
   stic_timing_count(t, "samples_queued_most", (int64_t)report->samples_most);
   stic_timing_count(t, "rows_queued_most", (int64_t)report->rows_most);
+  if (r->viewer)
+    stic_timing_count(t, "view_pictures", stic_viewer_pictures(r->viewer));
   if (!stic_run_pictures_wanted(r->pictures))
     return;
   stic_timing_count(t, "pictures", r->pictures->count);
@@ -219,6 +247,8 @@ static int finish(run *r, const stic_live_report *report, stic_error *err)
     code = stic_cli_fail(err);
   if (report->picture_error.status != STIC_OK)
     code = stic_cli_fail(&report->picture_error);
+  if (code == STIC_OK)
+    code = r->view_code;
   tell_report(r, report);
   return code;
 }
@@ -228,6 +258,7 @@ typedef struct run_options {
   stic_session_options session;
   char *device, *tracker, *record; /* popt's copies */
   stic_run_pictures pictures;
+  int view;
 } run_options;
 
 static stic_status open_device(run *r, const run_options *o, const char *scene, stic_error *err)
@@ -245,9 +276,22 @@ static stic_status open_device(run *r, const run_options *o, const char *scene, 
     status = stic_ring_create(sizeof(news), NEWS_ROOM, &r->news, err);
   if (status == STIC_OK)
     status = stic_supervisor_open(o->device, &supervised, &r->device, err);
+  if (status == STIC_OK && is_mouse(r) && !o->view)
+    status = stic_error_set(err, STIC_USAGE, NULL, 0, "device mouse: it moves in the window; add --view");
   if (status == STIC_OK)
     stic_tracker_begin(&r->tracker, &settings, stic_supervisor_driver(r->device)->kind);
   return status;
+}
+
+static stic_status open_view(run *r, const run_options *o, stic_error *err)
+{
+  stic_viewer_settings settings = {.scene = &r->session.scene,
+                                   .mouse = is_mouse(r) ? stic_supervisor_device(r->device) : NULL};
+  stic_status status;
+
+  stic_render_settings_init(&settings.picture);
+  status = stic_pictures_apply(&o->pictures.options, &settings.picture, err);
+  return status == STIC_OK ? stic_viewer_open(&settings, &r->viewer, err) : status;
 }
 
 static stic_status open_all(run *r, const run_options *o, const char *scene, stic_error *err)
@@ -261,6 +305,8 @@ static stic_status open_all(run *r, const run_options *o, const char *scene, sti
   status = stic_session_open(&r->session, &o->session, scene, "device", described, err);
   if (status == STIC_OK)
     status = stic_session_time(&r->session, err);
+  if (status == STIC_OK && o->view)
+    status = open_view(r, o, err);
   if (status == STIC_OK && o->record)
     status = stic_trace_create(o->record, described, &r->recording, err);
   return status;
@@ -280,6 +326,7 @@ static int run_device(run_options *options, const char *scene)
   else
     code = finish(&r, &report, &err);
   stic_trace_finish(r.recording, NULL);
+  stic_viewer_close(r.viewer);
   stic_session_close(&r.session);
   stic_supervisor_close(r.device);
   stic_ring_destroy(r.news);
@@ -305,6 +352,7 @@ int stic_cmd_run(int argc, const char **argv)
     {"tracker", '\0', POPT_ARG_STRING, &o.tracker, 0,
      "Where the tracker stands and which button does what, instead of the scene's section tracker", "FILE"},
     {"record", '\0', POPT_ARG_STRING, &o.record, 0, "Record the samples as a trace", "FILE"},
+    {"view", '\0', POPT_ARG_NONE, &o.view, 0, "Show it live in a window (key h: help)", NULL},
     STIC_SESSION_OPTIONS(&o.session),
     STIC_RUN_PICTURE_OPTIONS(&o.pictures),
     POPT_TABLEEND};

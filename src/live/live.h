@@ -52,7 +52,7 @@ typedef struct stic_live_pictures {
 
 typedef struct stic_live_settings {
   stic_supervisor *device;     /* the reader's from start to finish */
-  const stic_tracker *tracker; /* from the device's frame to the room's; not for devices with own_time */
+  const stic_tracker *tracker; /* from the device's frame to the room's; not for devices that are in_room */
   stic_sim *sim;               /* the solver's from start to finish */
   bool events;                 /* rows carry their events, default false */
   stic_live_output output;

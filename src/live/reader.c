@@ -39,8 +39,7 @@ static void queue(stic_live *live, stic_device_sample *from, int64_t since_ns)
   live_reader *r = &live->reader;
   live_sample *to;
 
-  /* A trace is a hand in the room already. */
-  if (!r->own_time)
+  if (!stic_supervisor_driver(r->device)->in_room)
     stic_tracker_apply(&r->tracker, from);
   if ((from->flags & known) != known)
     return; /* nobody knows yet where the hand is */

@@ -48,7 +48,6 @@ bool stic_xvfb_start(stic_xvfb *x)
   close(tell[0]);
   snprintf(name, sizeof name, ":%d", atoi(number));
   setenv("DISPLAY", name, 1);
-  setenv("SDL_VIDEODRIVER", "x11", 1);
   x->display = length ? XOpenDisplay(name) : NULL;
   if (!x->display && getenv("CI") && strcmp(getenv("CI"), "true") == 0)
     fail_msg("no Xvfb; install the packages of the line test in the file packages");
