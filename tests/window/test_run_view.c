@@ -1,0 +1,191 @@
+/* stiction run --view --device mouse on a display in memory: a user takes the box, drags it along the floor, turns it
+ * and ends the run; the recording replays to the same log. */
+#include "xvfb.h"
+
+#include "../files/help.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define DEGREE 0.017453292519943295
+
+/* The last row of the recording or log that grows on disk: its first `count` numbers; false if there is none. */
+static bool last_numbers(const char *path, double *numbers, int count)
+{
+  char *text = stic_test_read(path), *line = text, *end;
+  bool ok = false;
+
+  if (text && (end = strrchr(text, '\n'))) {
+    *end = '\0';
+    line = strrchr(text, '\n');
+    ok = line && line[1] >= '0' && line[1] <= '9';
+    line = line ? line + 1 : text;
+    for (int i = 0; ok && i < count; i++) {
+      numbers[i] = strtod(line, &end);
+      line = end + 1;
+    }
+  }
+  free(text);
+  return ok;
+}
+
+static void pause_ms(int ms)
+{
+  nanosleep(&(struct timespec){ms / 1000, ms % 1000 * 1000000L}, NULL);
+}
+
+/* Points at a pixel and waits until the recording says where that is: m. */
+static void point(stic_xvfb *x, const double pixel[2], double place[2])
+{
+  double before[3] = {0, 1e300, 1e300}, now[3];
+
+  last_numbers(stic_test_path("hand.csv"), before, 3);
+  stic_xvfb_point(x, (int)pixel[0], (int)pixel[1]);
+  for (int i = 0; i < 200; i++) {
+    pause_ms(20);
+    if (last_numbers(stic_test_path("hand.csv"), now, 3) && (now[1] != before[1] || now[2] != before[2])) {
+      pause_ms(60); /* and the picture with it */
+      memcpy(place, now + 1, 2 * sizeof *place);
+      return;
+    }
+  }
+  fail_msg("the pointer moved, the hand did not");
+}
+
+/* The pixel of a place, from where two other pixels are: x and y are to scale in the hand's plane. */
+static void pixel_of(const double place[2], double pixels[2][2], double places[2][2], double pixel[2])
+{
+  for (int k = 0; k < 2; k++)
+    pixel[k] = pixels[0][k] +
+               (pixels[1][k] - pixels[0][k]) * (place[k] - places[0][k]) / (places[1][k] - places[0][k]);
+}
+
+/* From the pixel to the place in steps, as a hand does. */
+static void drag(stic_xvfb *x, double pixel[2], const double to[2])
+{
+  const double from[2] = {pixel[0], pixel[1]};
+
+  for (int i = 1; i <= 40; i++) {
+    for (int k = 0; k < 2; k++)
+      pixel[k] = floor(from[k] + (to[k] - from[k]) * i / 40 + 0.5);
+    stic_xvfb_point(x, (int)pixel[0], (int)pixel[1]);
+    pause_ms(15);
+  }
+  pause_ms(100);
+}
+
+/* The session of a user; all places in m. */
+static void use_mouse(stic_xvfb *x)
+{
+  double pixels[2][2] = {{360, 200}, {440, 260}}, places[2][2], at[2], to[2];
+  double row[9];
+
+  point(x, pixels[0], places[0]);
+  point(x, pixels[1], places[1]);
+  pixel_of((double[2]){0.12, 0.04}, pixels, places, at);
+  point(x, at, to);
+  assert_true(fabs(to[0] - 0.12) < 0.002 && fabs(to[1] - 0.04) < 0.002);
+  stic_xvfb_button(x, 1, true);
+  pixel_of((double[2]){0.12, 0.02}, pixels, places, to);
+  drag(x, at, to);
+  pixel_of((double[2]){0.22, 0.02}, pixels, places, to);
+  drag(x, at, to);
+  for (int i = 0; i < 5; i++) {
+    stic_xvfb_button(x, 4, true);
+    stic_xvfb_button(x, 4, false);
+    pause_ms(30);
+  }
+  stic_xvfb_hold_key(x, "Shift_L", true);
+  stic_xvfb_button(x, 5, true);
+  stic_xvfb_button(x, 5, false);
+  stic_xvfb_hold_key(x, "Shift_L", false);
+  pause_ms(100);
+  assert_true(last_numbers(stic_test_path("hand.csv"), row, 9));
+  assert_true(fabs(2 * atan2(row[6], row[7]) - 9.75 * DEGREE) < 1e-9);
+  assert_true(row[3] == 0 && row[8] == 1);
+  stic_xvfb_hold_key(x, "Control_L", true);
+  stic_xvfb_button(x, 4, true);
+  stic_xvfb_button(x, 4, false);
+  stic_xvfb_hold_key(x, "Control_L", false);
+  pause_ms(100);
+  assert_true(last_numbers(stic_test_path("hand.csv"), row, 9));
+  assert_true(row[3] < 0);
+  stic_xvfb_button(x, 1, false);
+  pause_ms(100);
+}
+
+static char *rows_of(const char *path)
+{
+  char *text = stic_test_read(path), *at = text;
+
+  assert_non_null(text);
+  while (*at == '#')
+    at = strchr(at, '\n') + 1;
+  memmove(text, at, strlen(at) + 1);
+  return text;
+}
+
+static void test_mouse(void **state)
+{
+  char hand[300], log[300], again[300], events[300];
+  const stic_test_run *replay;
+  char *live, *replayed, *told;
+  stic_xvfb x;
+  pid_t child;
+
+  (void)state;
+  if (!stic_xvfb_start(&x)) {
+    print_message("no Xvfb here: skipped\n");
+    skip();
+  }
+  snprintf(hand, sizeof hand, "%s", stic_test_path("hand.csv"));
+  snprintf(log, sizeof log, "%s", stic_test_path("log.csv"));
+  snprintf(again, sizeof again, "%s", stic_test_path("again.csv"));
+  snprintf(events, sizeof events, "%s", stic_test_path("events.csv"));
+  child =
+    stic_test_start(NULL, (const char *const[]){"run", SCENE, "--device", "mouse", "--view", "--record", hand,
+                                                "--log", log, "--events", events, "--size", "800x600", NULL});
+  assert_true(stic_xvfb_find_window(&x));
+  use_mouse(&x);
+  stic_xvfb_key(&x, "q");
+  assert_int_equal(stic_test_wait(child), 0);
+  replay = stic_test_program("replay", SCENE, hand, "--log", again, NULL);
+  assert_int_equal(replay->code, 0);
+  live = rows_of(log);
+  replayed = rows_of(again);
+  assert_string_equal(live, replayed);
+  assert_non_null(strstr(live, ",edge,"));
+  told = stic_test_read(events);
+  assert_non_null(strstr(told, ",take,"));
+  assert_non_null(strstr(told, ",slip,"));
+  assert_non_null(strstr(told, ",release,"));
+  free(live);
+  free(replayed);
+  free(told);
+  stic_xvfb_stop(&x);
+}
+
+static void test_refusals(void **state)
+{
+  const stic_test_run *run = stic_test_program("run", SCENE, "--device", "mouse", NULL);
+
+  (void)state;
+  assert_int_equal(run->code, 2);
+  stic_test_contains(run->err, "device mouse: it moves in the window; add --view");
+  setenv("DISPLAY", "", 1);
+  run = stic_test_program("run", SCENE, "--device", "sample", "--view", "--log", stic_test_path("none.csv"),
+                          NULL);
+  assert_int_equal(run->code, 5);
+  stic_test_contains(run->err, "cannot open a window: ");
+  assert_int_equal(stic_test_count_entries("none.csv"), 0);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_refusals), cmocka_unit_test(test_mouse)};
+
+  return cmocka_run_group_tests_name("run_view", tests, NULL, stic_test_clean_up);
+}
