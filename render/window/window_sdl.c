@@ -12,6 +12,11 @@ struct stic_window {
   SDL_Renderer *renderer;
   SDL_Texture *texture; /* of the last picture's size; NULL before the first */
   int width, height;    /* px, of the texture */
+
+  /* The pointer as of the last event taken; SDL itself is ahead of its queue. */
+  int x, y;         /* in the desktop's units */
+  Uint32 buttons;   /* SDL_BUTTON() */
+  Uint16 modifiers; /* KMOD_ */
 };
 
 static void window_close(stic_window *w)
@@ -70,26 +75,25 @@ static void window_size(const stic_window *w, int *width, int *height)
 /* ---- events ------------------------------------------------------------------------------ */
 
 /* Mouse coordinates are those of the desktop, which may be coarser than pixels. */
-static void set_place(const stic_window *w, int x, int y, stic_window_event *event)
+static void set_place(const stic_window *w, stic_window_event *event)
 {
   int width, height, wide, tall;
 
   SDL_GetWindowSize(w->window, &width, &height);
   window_size(w, &wide, &tall);
-  event->x = (x + 0.5) * wide / (width > 0 ? width : 1);
-  event->y = (y + 0.5) * tall / (height > 0 ? height : 1);
+  event->x = (w->x + 0.5) * wide / (width > 0 ? width : 1);
+  event->y = (w->y + 0.5) * tall / (height > 0 ? height : 1);
 }
 
-static void set_pointer(const stic_window *w, int x, int y, Uint32 buttons, stic_window_event *event)
+static void set_pointer(const stic_window *w, stic_window_kind kind, stic_window_event *event)
 {
-  const SDL_Keymod mod = SDL_GetModState();
-
-  set_place(w, x, y, event);
-  event->buttons = (buttons & SDL_BUTTON_LMASK ? STIC_POINTER_LEFT : 0u) |
-                   (buttons & SDL_BUTTON_MMASK ? STIC_POINTER_MIDDLE : 0u) |
-                   (buttons & SDL_BUTTON_RMASK ? STIC_POINTER_RIGHT : 0u);
-  event->modifiers =
-    (mod & KMOD_SHIFT ? STIC_MODIFIER_SHIFT : 0u) | (mod & KMOD_CTRL ? STIC_MODIFIER_CTRL : 0u);
+  event->kind = kind;
+  set_place(w, event);
+  event->buttons = (w->buttons & SDL_BUTTON_LMASK ? STIC_POINTER_LEFT : 0u) |
+                   (w->buttons & SDL_BUTTON_MMASK ? STIC_POINTER_MIDDLE : 0u) |
+                   (w->buttons & SDL_BUTTON_RMASK ? STIC_POINTER_RIGHT : 0u);
+  event->modifiers = (w->modifiers & KMOD_SHIFT ? STIC_MODIFIER_SHIFT : 0u) |
+                     (w->modifiers & KMOD_CTRL ? STIC_MODIFIER_CTRL : 0u);
 }
 
 static void set_wheel(const SDL_MouseWheelEvent *wheel, stic_window_event *event)
@@ -128,33 +132,45 @@ static bool set_key(const SDL_KeyboardEvent *key, stic_window_event *event)
   return event->key > 0 && event->key <= STIC_KEY_F11;
 }
 
-/* False for what is of no concern. */
-static bool translate(const stic_window *w, const SDL_Event *from, stic_window_event *event)
+static void take_pointer(stic_window *w, const SDL_Event *from)
 {
-  int x, y;
+  switch (from->type) {
+  case SDL_KEYDOWN:
+  case SDL_KEYUP: w->modifiers = from->key.keysym.mod; break;
+  case SDL_MOUSEMOTION:
+    w->x = from->motion.x;
+    w->y = from->motion.y;
+    w->buttons = from->motion.state;
+    break;
+  case SDL_MOUSEBUTTONDOWN:
+  case SDL_MOUSEBUTTONUP:
+    w->x = from->button.x;
+    w->y = from->button.y;
+    if (from->type == SDL_MOUSEBUTTONDOWN)
+      w->buttons |= (Uint32)SDL_BUTTON(from->button.button);
+    else
+      w->buttons &= ~(Uint32)SDL_BUTTON(from->button.button);
+    break;
+  default: break;
+  }
+}
 
+/* False for what is of no concern. */
+static bool translate(stic_window *w, const SDL_Event *from, stic_window_event *event)
+{
   memset(event, 0, sizeof *event);
+  take_pointer(w, from);
   switch (from->type) {
   case SDL_QUIT: event->kind = STIC_WINDOW_CLOSE; return true;
   case SDL_WINDOWEVENT: return set_window_event(&from->window, event);
   case SDL_KEYDOWN: return set_key(&from->key, event);
-  case SDL_MOUSEMOTION:
-    event->kind = STIC_WINDOW_MOTION;
-    set_pointer(w, from->motion.x, from->motion.y, from->motion.state, event);
-    return true;
+  case SDL_MOUSEMOTION: set_pointer(w, STIC_WINDOW_MOTION, event); return true;
   case SDL_MOUSEBUTTONDOWN:
-  case SDL_MOUSEBUTTONUP:
-    event->kind = STIC_WINDOW_BUTTON;
-    set_pointer(w, from->button.x, from->button.y, SDL_GetMouseState(NULL, NULL), event);
-    return true;
-  case SDL_MOUSEWHEEL: {
-    const Uint32 buttons = SDL_GetMouseState(&x, &y);
-
-    event->kind = STIC_WINDOW_WHEEL;
-    set_pointer(w, x, y, buttons, event);
+  case SDL_MOUSEBUTTONUP: set_pointer(w, STIC_WINDOW_BUTTON, event); return true;
+  case SDL_MOUSEWHEEL:
+    set_pointer(w, STIC_WINDOW_WHEEL, event);
     set_wheel(&from->wheel, event);
     return event->wheel != 0;
-  }
   default: return false;
   }
 }
