@@ -4,11 +4,13 @@
 
 #include <assert.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 /* ---- messages ---------------------------------------------------------------------------- */
 
@@ -188,6 +190,19 @@ stic_status stic_cli_check_paths(const char *const *inputs, int input_count, con
   return STIC_OK;
 }
 
+/* ---- standard streams --------------------------------------------------------------------- */
+
+void stic_cli_hold_streams(void)
+{
+  int fd;
+
+  do
+    fd = open("/dev/null", O_RDONLY); /* a closed output is one that cannot be written */
+  while (fd >= 0 && fd <= STDERR_FILENO);
+  if (fd > STDERR_FILENO)
+    close(fd);
+}
+
 /* ---- signals ----------------------------------------------------------------------------- */
 
 static volatile sig_atomic_t caught_signal;
@@ -199,15 +214,19 @@ static void on_signal(int number)
 
 void stic_cli_catch_signals(void)
 {
-  struct sigaction action;
+  struct sigaction action, before;
 
   memset(&action, 0, sizeof action);
   sigemptyset(&action.sa_mask);
   action.sa_handler = on_signal; /* without SA_RESTART: a waiting read must return */
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
+  sigaction(SIGHUP, NULL, &before);
+  if (before.sa_handler != SIG_IGN) /* nohup */
+    sigaction(SIGHUP, &action, NULL);
   action.sa_handler = SIG_IGN;
   sigaction(SIGPIPE, &action, NULL);
+  sigaction(SIGXFSZ, &action, NULL);
 }
 
 int stic_cli_signal(void)

@@ -65,9 +65,16 @@ void stic_cli_free_list(char **list);
 stic_status stic_cli_check_paths(const char *const *inputs, int input_count, const char *const *outputs,
                                  int output_count, stic_error *err);
 
+/* ---- standard streams --------------------------------------------------------------------- */
+
+/* Has every standard stream stand for something, if closed for nothing: else the next file opened would take its
+ * number, and what is meant for standard output would go there. */
+void stic_cli_hold_streams(void);
+
 /* ---- signals ----------------------------------------------------------------------------- */
 
-/* Catches SIGINT and SIGTERM, and has writes to closed pipes fail instead of killing. */
+/* Catches SIGINT, SIGTERM and SIGHUP, and has writes to closed pipes and beyond the limit of a file's size fail
+ * instead of killing. */
 void stic_cli_catch_signals(void);
 /* The signal that came, 0: none. */
 int stic_cli_signal(void);

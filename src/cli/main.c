@@ -49,10 +49,17 @@ static int show_version(void)
   return (int)stic_cli_flush();
 }
 
+/* An input that a signal interrupted is no bad one. */
+static int ended(int code)
+{
+  return code == STIC_BAD_INPUT && stic_cli_signal() != 0 ? STIC_EXIT_SIGNAL + stic_cli_signal() : code;
+}
+
 int main(int argc, char **argv)
 {
   const char *name = argc > 1 ? argv[1] : "";
 
+  stic_cli_hold_streams();
   stic_cli_catch_signals();
   if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0)
     return show_help();
@@ -60,7 +67,7 @@ int main(int argc, char **argv)
     return show_version();
   for (size_t i = 0; i < COMMAND_COUNT; i++) {
     if (strcmp(name, commands[i].name) == 0)
-      return commands[i].run(argc - 1, (const char **)(argv + 1));
+      return ended(commands[i].run(argc - 1, (const char **)(argv + 1)));
   }
   if (*name)
     stic_cli_say("unknown command '%.40s'; see stiction --help", name);

@@ -16,7 +16,7 @@ struct stic_line_reader {
   int fd;
   bool owned; /* fd is ours to close */
   bool at_end;
-  bool skipping; /* inside a line that is too long */
+  bool skipping; /* inside a line that was too long and has been told */
   int64_t number;
   size_t start, searched, end; /* in buffer: the unread part, and how far it holds no line end */
   char name[256];
@@ -67,15 +67,13 @@ static bool find_end(const stic_line_reader *r, size_t *at)
 static stic_line_status take_line(stic_line_reader *r, size_t line_end, const char **text, size_t *length)
 {
   size_t from = r->start, to = line_end;
-  const bool too_long = r->skipping || to - from > STIC_LINE_MAX + 1;
 
   r->start = r->searched = line_end + 1;
-  r->skipping = false;
   if (++r->number == 1 && to - from >= 3 && memcmp(r->buffer + from, "\xef\xbb\xbf", 3) == 0)
     from += 3;
   if (to > from && r->buffer[to - 1] == '\r')
     to--;
-  if (too_long || to - from > STIC_LINE_MAX)
+  if (to - from > STIC_LINE_MAX)
     return STIC_LINE_TOO_LONG;
   *text = r->buffer + from;
   *length = to - from;
@@ -84,23 +82,37 @@ static stic_line_status take_line(stic_line_reader *r, size_t line_end, const ch
 
 static stic_line_status take_rest(stic_line_reader *r, const char **text, size_t *length)
 {
-  if (r->start == r->end && !r->skipping)
+  if (r->start == r->end)
     return STIC_LINE_END;
   *text = r->buffer + r->start;
   *length = r->end - r->start;
   r->start = r->searched = r->end;
-  r->skipping = false;
   r->number++;
   return STIC_LINE_UNFINISHED;
+}
+
+/* Told as soon as it is known, as the end of such a line may never come; what is left of it is passed over. */
+static stic_line_status refuse_line(stic_line_reader *r)
+{
+  r->skipping = true;
+  r->start = r->searched = r->end = 0;
+  r->number++;
+  return STIC_LINE_TOO_LONG;
+}
+
+/* The rest of a refused line, as far as it has been read. */
+static void pass_over(stic_line_reader *r)
+{
+  size_t line_end = r->end;
+
+  r->skipping = !find_end(r, &line_end);
+  r->start = r->searched = r->skipping ? r->end : line_end + 1;
 }
 
 static void make_room(stic_line_reader *r)
 {
   r->searched = r->end;
-  if (r->skipping || r->end - r->start > STIC_LINE_MAX + 4) { /* 4: "\r" and a byte-order mark */
-    r->skipping = true;
-    r->start = r->searched = r->end = 0;
-  } else if (r->start > 0 && BUFFER_SIZE - r->end < BUFFER_SIZE / 2) {
+  if (r->start > 0 && BUFFER_SIZE - r->end < BUFFER_SIZE / 2) {
     memmove(r->buffer, r->buffer + r->start, r->end - r->start);
     r->end -= r->start;
     r->searched -= r->start;
@@ -117,10 +129,14 @@ stic_line_status stic_line_reader_next(stic_line_reader *r, const char **text, s
   for (;;) {
     ssize_t n;
 
+    if (r->skipping)
+      pass_over(r);
     if (find_end(r, &line_end))
       return take_line(r, line_end, text, length);
     if (r->at_end)
       return take_rest(r, text, length);
+    if (r->end - r->start > STIC_LINE_MAX + 4) /* 4: "\r" and a byte-order mark */
+      return refuse_line(r);
     if (has_read)
       return STIC_LINE_WAIT;
     make_room(r);

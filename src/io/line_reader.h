@@ -8,7 +8,7 @@
 
 typedef enum stic_line_status {
   STIC_LINE_READ,       /* a whole line */
-  STIC_LINE_TOO_LONG,   /* a line above the limit, passed over */
+  STIC_LINE_TOO_LONG,   /* a line above the limit, told before its end is read; the rest of it is passed over */
   STIC_LINE_UNFINISHED, /* the last line, without its end; then STIC_LINE_END */
   STIC_LINE_END,
   STIC_LINE_WAIT,  /* interrupted by a signal, or nothing there on a non-blocking file; ask again */

@@ -130,17 +130,18 @@ static stic_status next_line(stic_log_reader *r, const char **text, size_t *leng
 {
   stic_line_status status;
 
-  do
+  do {
+    errno = 0;
     status = stic_line_reader_next(r->lines, text, length);
-  while (status == STIC_LINE_WAIT);
+  } while (status == STIC_LINE_WAIT && errno != EINTR);
   *more = status == STIC_LINE_READ;
   switch (status) {
   case STIC_LINE_READ:
-  case STIC_LINE_END:
-  case STIC_LINE_WAIT: return STIC_OK;
+  case STIC_LINE_END: return STIC_OK;
   case STIC_LINE_TOO_LONG:
     return BAD(r, err, "the line is longer than %d bytes; expected a row of a log", STIC_LINE_MAX);
   case STIC_LINE_UNFINISHED: return BAD(r, err, "the last line has no end; expected a complete log");
+  case STIC_LINE_WAIT:
   case STIC_LINE_FAILED: break;
   }
   return stic_error_set(err, STIC_BAD_INPUT, stic_line_reader_name(r->lines), 0, "cannot read: %s",

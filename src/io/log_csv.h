@@ -45,7 +45,7 @@ stic_status stic_log_open(const char *path, stic_log_reader **reader, stic_error
 void stic_log_close(stic_log_reader *reader); /* NULL allowed */
 
 /* The next row: `*more` is false at the end. What a log does not hold is 0: the holding point and
- * contacts after the fourth (contact_count stays the true number). Signals are waited out. */
+ * contacts after the fourth (contact_count stays the true number). A signal while it waits is an error. */
 stic_status stic_log_next(stic_log_reader *reader, stic_result *result, bool *more, stic_error *err);
 
 /* Value of a provenance line, "" if there is none; lives as long as the reader. */
