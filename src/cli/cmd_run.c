@@ -1,4 +1,5 @@
 /* stiction run: a device's samples through the solver in real time. */
+#include "../../drivers/device_spec.h"
 #include "../../drivers/mouse/mouse_driver.h"
 #include "../error.h"
 #include "../io/trace_csv.h"
@@ -264,12 +265,18 @@ typedef struct run_options {
 static stic_status open_device(run *r, const run_options *o, const char *scene, stic_error *err)
 {
   const stic_supervisor_options supervised = {on_connection, r, 0};
-  const char *const inputs[] = {scene};
   const char *const outputs[] = {o->session.log, o->session.events, o->session.timing, o->record,
                                  o->pictures.video};
   stic_tracker_settings settings;
-  stic_status status = stic_cli_check_paths(inputs, 1, outputs, 5, err);
+  stic_device_spec spec;
+  stic_status status = stic_spec_parse(o->device, &spec, err);
 
+  if (status == STIC_OK) {
+    /* A recording that is replayed as a device must not be what is written. */
+    const char *const inputs[] = {scene, o->tracker, stic_spec_text(&spec, "file", NULL)};
+
+    status = stic_cli_check_paths(inputs, 3, outputs, 5, err);
+  }
   if (status == STIC_OK)
     status = stic_tracker_read(o->tracker ? o->tracker : scene, o->tracker != NULL, &settings, err);
   if (status == STIC_OK)
