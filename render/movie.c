@@ -24,6 +24,8 @@ struct stic_movie {
   int fps;
   void (*timed)(void *, stic_movie_stage, int64_t);
   void *user;
+  bool (*stopped)(void);
+  bool force;
   char *folder;     /* NULL: none */
   char *draft;      /* folder of the pictures until they are kept; NULL: not made yet */
   bool folder_made; /* by us: goes again if nothing is kept */
@@ -93,21 +95,30 @@ static stic_status refused(const char *folder, const char *what, stic_error *err
   return stic_error_set(err, STIC_CANNOT_WRITE, folder, 0, "%s: %s", what, strerror(errno));
 }
 
-static stic_status prepare_folder(stic_movie *m, bool force, stic_error *err)
+static stic_status refuse_older(const stic_movie *m, stic_error *err)
+{
+  const int64_t old = pictures_in(m->folder, false);
+
+  if (old < 0)
+    return refused(m->folder, "cannot use the folder", err);
+  if (old > 0 && !m->force)
+    return stic_error_set(err, STIC_CANNOT_WRITE, m->folder, 0,
+                          "the folder has older pictures (frame_*.png); expected none, or --force");
+  return STIC_OK;
+}
+
+static stic_status prepare_folder(stic_movie *m, stic_error *err)
 {
   size_t room = strlen(m->folder) + 24;
-  int64_t old;
+  stic_status status;
   char *draft;
 
   m->folder_made = mkdir(m->folder, 0777) == 0;
   if (!m->folder_made && errno != EEXIST)
     return refused(m->folder, "cannot make the folder", err);
-  old = pictures_in(m->folder, false);
-  if (old < 0)
-    return refused(m->folder, "cannot use the folder", err);
-  if (old > 0 && !force)
-    return stic_error_set(err, STIC_CANNOT_WRITE, m->folder, 0,
-                          "the folder has older pictures (frame_*.png); expected none, or --force");
+  status = refuse_older(m, err);
+  if (status != STIC_OK)
+    return status;
   draft = malloc(room);
   if (!draft)
     return stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
@@ -122,6 +133,10 @@ static stic_status prepare_folder(stic_movie *m, bool force, stic_error *err)
 
 static stic_status keep_folder(stic_movie *m, stic_error *err)
 {
+  const stic_status status = refuse_older(m, err);
+
+  if (status != STIC_OK)
+    return status;
   pictures_in(m->folder, true);
   for (int64_t i = 0; i < m->count; i++) {
     char *from = stic_png_sequence_path(m->draft, i), *to = stic_png_sequence_path(m->folder, i);
@@ -161,7 +176,7 @@ static stic_status open_parts(stic_movie *m, const stic_movie_settings *s, const
   }
   status = stic_render_create(scene, &s->render, &m->render, err);
   if (!status && m->folder)
-    status = prepare_folder(m, s->force, err);
+    status = prepare_folder(m, err);
   if (!status && m->folder)
     status = stic_png_writer_create(m->draft, s->render.width, s->render.height, s->workers, &m->writer, err);
   if (!status && s->video)
@@ -184,6 +199,8 @@ stic_status stic_movie_open(const stic_movie_settings *s, const stic_scene *scen
   m->fps = s->fps;
   m->timed = s->timed;
   m->user = s->user;
+  m->stopped = s->stopped;
+  m->force = s->force;
   status = open_parts(m, s, scene, err);
   if (status) {
     stic_movie_close(m);
@@ -233,11 +250,16 @@ static bool is_due(const stic_movie *m, int64_t t_ns, bool inclusive)
   return inclusive ? picture <= now : picture < now;
 }
 
+static bool goes_on(const stic_movie *m)
+{
+  return m->begun && !(m->stopped && m->stopped());
+}
+
 stic_status stic_movie_before(stic_movie *m, int64_t t_ns, stic_error *err)
 {
   stic_status status = STIC_OK;
 
-  while (!status && m->begun && is_due(m, t_ns, false))
+  while (!status && goes_on(m) && is_due(m, t_ns, false))
     status = draw_one(m, err);
   return status;
 }
@@ -265,7 +287,7 @@ stic_status stic_movie_finish(stic_movie *m, stic_error *err)
 {
   stic_status status = STIC_OK;
 
-  while (!status && m->begun && is_due(m, m->last_ns, true))
+  while (!status && goes_on(m) && is_due(m, m->last_ns, true))
     status = draw_one(m, err);
   if (!status && m->writer)
     status = stic_png_writer_finish(m->writer, err);

@@ -24,6 +24,7 @@ typedef struct stic_movie_settings {
   /* Called after each stage with its wall time, in the caller's thread; NULL (default): not. */
   void (*timed)(void *user, stic_movie_stage stage, int64_t ns);
   void *user;
+  bool (*stopped)(void); /* asked before each picture: true ends the drawing early; NULL (default): never */
 } stic_movie_settings;
 
 void stic_movie_settings_init(stic_movie_settings *settings);
@@ -52,7 +53,8 @@ void stic_movie_observe(stic_movie *movie, const stic_result *result);
 /* Draws the pictures that are left, up to the last result, and waits until all is written. */
 stic_status stic_movie_finish(stic_movie *movie, stic_error *err);
 
-/* After finish: moves the outputs to their places, instead of older ones. */
+/* After finish: moves the outputs to their places, instead of older ones. STIC_CANNOT_WRITE as well if another run
+ * has put pictures into the folder meanwhile, unless forced. */
 stic_status stic_movie_keep(stic_movie *movie, stic_error *err);
 
 /* Pictures so far. */

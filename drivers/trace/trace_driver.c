@@ -6,6 +6,7 @@
 
 #include <assert.h>
 #include <errno.h>
+#include <math.h>
 #include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,6 +15,7 @@
 #define SPEED_MIN 1e-3
 #define SPEED_MAX 1e6
 #define PATH_ROOM 512
+#define LATEST_NS 4e18 /* a century from now: no overflow */
 
 typedef struct trace_device {
   stic_device base;
@@ -98,7 +100,7 @@ static void take_sample(trace_device *d, const stic_sample *sample)
   d->last_ns = sample->t_ns;
   memset(next, 0, sizeof *next);
   next->source_ns = sample->t_ns + d->shift_ns;
-  next->t_ns = d->start_ns + (int64_t)((double)(next->source_ns - d->first_ns) / d->speed);
+  next->t_ns = d->start_ns + (int64_t)fmin((double)(next->source_ns - d->first_ns) / d->speed, LATEST_NS);
   next->sequence = d->sequence++;
   memcpy(next->position, sample->position, sizeof next->position);
   memcpy(next->orientation, sample->orientation, sizeof next->orientation);

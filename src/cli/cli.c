@@ -48,7 +48,7 @@ void stic_cli_say(const char *format, ...)
 
 stic_status stic_cli_flush(void)
 {
-  if (fflush(stdout) == 0 || errno == EPIPE)
+  if ((fflush(stdout) == 0 && !ferror(stdout)) || errno == EPIPE)
     return STIC_OK;
   stic_cli_say("cannot write to standard output: %s", strerror(errno));
   return STIC_CANNOT_WRITE;

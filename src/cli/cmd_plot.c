@@ -180,14 +180,14 @@ static int draw_into(plot_run *r, const char *folder, stic_error *err)
     return stic_cli_fail(err);
   }
   for (int i = STIC_FIGURE_FIRST; i <= STIC_FIGURE_LAST; i++) {
-    for (int k = 0; r->figures[i] && k < 3 && code == STIC_OK; k++) {
+    for (int k = 0; r->figures[i] && k < 3 && code == STIC_OK && stic_cli_signal() == 0; k++) {
       if (only && strcmp(only, formats[k]) != 0)
         continue;
       snprintf(path, sizeof path, "%.4000s/figure-%d.%s", folder, i, formats[k]);
       code = draw(r, i, path, err);
     }
   }
-  return code;
+  return code == STIC_OK && stic_cli_signal() != 0 ? STIC_EXIT_SIGNAL + stic_cli_signal() : code;
 }
 
 static int plot_log(plot_run *r, const char *log, stic_error *err)

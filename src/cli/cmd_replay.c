@@ -132,6 +132,11 @@ static void on_stage(void *user, stic_movie_stage stage, int64_t ns)
   stic_timing_add(user, stage == STIC_MOVIE_RENDER ? STIC_STAGE_RENDER : STIC_STAGE_ENCODE, ns);
 }
 
+static bool is_stopped(void)
+{
+  return stic_cli_signal() != 0;
+}
+
 static stic_status open_movie(replay *r, const replay_options *o, const char *trace, stic_error *err)
 {
   stic_movie_settings settings;
@@ -145,6 +150,7 @@ static stic_status open_movie(replay *r, const replay_options *o, const char *tr
   settings.force = o->force != 0;
   settings.timed = r->session.timing ? on_stage : NULL;
   settings.user = r->session.timing;
+  settings.stopped = is_stopped;
   settings.render.extent = &extent;
   status = stic_pictures_apply(&o->pictures, &settings.render, err);
   if (status == STIC_OK && o->hud_timing)

@@ -78,8 +78,11 @@ static int open_place(stic_outfile *out)
 {
   struct stat st;
   const bool exists = stat(out->path, &st) == 0;
-  int problem;
+  int problem = errno;
 
+  /* A link to nothing, or in a circle: the rename would replace the link. */
+  if (!exists && lstat(out->path, &st) == 0)
+    return problem;
   if (exists && S_ISDIR(st.st_mode))
     return EISDIR;
   if (exists && !S_ISREG(st.st_mode)) {

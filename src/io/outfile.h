@@ -7,7 +7,7 @@
 typedef struct stic_outfile stic_outfile;
 
 /* Starts an output for `path`; nothing appears there before stic_outfile_commit(). An existing file
- * keeps its permissions and is replaced only then; a symbolic link's target is meant. "-" (standard
+ * keeps its permissions and is replaced only then; a symbolic link's target is meant and has to be there. "-" (standard
  * output) and what is no regular file (a pipe, /dev/null) are written directly. The caller owns
  * `*out`. Errors: STIC_CANNOT_WRITE, STIC_NO_MEMORY. Real-time: no. */
 stic_status stic_outfile_open(const char *path, stic_outfile **out, stic_error *err);

@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #define COLUMNS 9
@@ -317,6 +318,26 @@ static stic_status write_whole(stic_trace_writer *w, const char *text, size_t le
   return STIC_OK;
 }
 
+/* An emptied file that no other recorder writes to; -1 and errno, with what the other wrote untouched. */
+static int open_alone(const char *path)
+{
+  struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+  const int fd = open(path, O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  struct stat st;
+  int problem;
+
+  if (fd < 0 || fstat(fd, &st) != 0 || !S_ISREG(st.st_mode))
+    return fd;
+  if (fcntl(fd, F_SETLK, &whole) == 0 || errno == ENOLCK || errno == EINVAL) {
+    if (ftruncate(fd, 0) == 0)
+      return fd;
+  }
+  problem = errno == EAGAIN || errno == EACCES ? EBUSY : errno;
+  close(fd);
+  errno = problem;
+  return -1;
+}
+
 stic_status stic_trace_create(const char *path, const char *comment, stic_trace_writer **writer,
                               stic_error *err)
 {
@@ -329,13 +350,14 @@ stic_status stic_trace_create(const char *path, const char *comment, stic_trace_
   *writer = NULL;
   if (!w)
     return stic_error_set(err, STIC_NO_MEMORY, path, 0, "out of memory");
-  w->fd = standard_output ? STDOUT_FILENO : open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  w->fd = standard_output ? STDOUT_FILENO : open_alone(path);
   w->owned = !standard_output;
   stic_error_quote(path, strlen(path), w->path, sizeof w->path);
   if (w->fd < 0) {
+    status = stic_error_set(err, STIC_CANNOT_WRITE, path, 0, "cannot create the recording: %s",
+                            errno == EBUSY ? "another program is recording to it" : strerror(errno));
     free(w);
-    return stic_error_set(err, STIC_CANNOT_WRITE, path, 0, "cannot create the recording: %s",
-                          strerror(errno));
+    return status;
   }
   n = snprintf(head, sizeof head, STIC_TRACE_FORMAT "\n%s%s%s" STIC_TRACE_HEADER "\n", comment ? "# " : "",
                comment ? stic_error_quote(comment, strlen(comment), quoted, sizeof quoted) : "",

@@ -53,7 +53,7 @@ bool stic_trace_cut(const stic_trace_reader *reader);
 typedef struct stic_trace_writer stic_trace_writer;
 
 /* Creates a recording. It is written line by line with one write() each, so that all but the last
- * line survives a crash; an existing file is replaced. `comment` (may be NULL) is one line of
+ * line survives a crash; an existing file is replaced, unless another program is recording to it. `comment` (may be NULL) is one line of
  * provenance. "-" is standard output. Errors: STIC_CANNOT_WRITE, STIC_NO_MEMORY. Real-time: no. */
 stic_status stic_trace_create(const char *path, const char *comment, stic_trace_writer **writer,
                               stic_error *err);
