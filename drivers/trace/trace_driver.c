@@ -29,6 +29,7 @@ typedef struct trace_device {
   int64_t interval_ns; /* and between the last two */
   int64_t shift_ns;    /* added to the trace's times: the rounds before */
   bool pending;        /* `next` waits to be given out */
+  int ended;           /* STIC_DRIVER_ that reading ended with; 0: goes on */
   stic_device_sample next;
   uint64_t sequence;
   char path[PATH_ROOM];
@@ -158,12 +159,12 @@ static int trace_poll(stic_device *device, int64_t until_ns, stic_device_sample 
 
   while (count < capacity) {
     if (!d->pending) {
-      const int result = read_next(d, count > 0 ? 0 : until_ns);
+      const int result = d->ended ? d->ended : read_next(d, count > 0 ? 0 : until_ns);
 
-      if (result < 0 && count > 0)
-        return count; /* the end is told by the next call */
+      if (result < 0)
+        d->ended = result; /* told by the next call if there are samples to give out */
       if (result <= 0)
-        return result < 0 ? result : count;
+        return count > 0 ? count : result;
     }
     if (d->next.t_ns > stic_clock_ns()) {
       if (count > 0)

@@ -42,7 +42,11 @@ static int measure(const stic_cli_args *args, const bench_options *o)
   if (trade) {
     const stic_trade_options options = {
       o->quick != 0, args->positions[1], args->positions[2], o->csv, o->plot, o->set};
+    const char *const inputs[] = {args->positions[1], args->positions[2]}, *const outputs[] = {o->csv};
+    stic_error err;
 
+    if (stic_cli_check_paths(inputs, 2, outputs, 1, &err) != STIC_OK)
+      return stic_cli_fail(&err);
     return stic_bench_trade(&options);
   }
   if (render)

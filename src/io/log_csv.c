@@ -305,6 +305,15 @@ static void take_contact(row_reader *row, stic_contact *c)
   c->friction = take_double(row);
 }
 
+/* Fields that must be empty. */
+static void take_nothing(row_reader *row, int count)
+{
+  for (; count > 0; count--, row->next++, row->column++) {
+    if (row->next->length > 0 && !row->bad)
+      row->bad = row->column;
+  }
+}
+
 static void take_row(row_reader *row, stic_result *r)
 {
   memset(r, 0, sizeof *r);
@@ -326,8 +335,12 @@ static void take_row(row_reader *row, stic_result *r)
   r->iterations = (int)take_integer(row, INT32_MAX);
   r->residual = take_double(row);
   r->contact_count = (int)take_integer(row, STIC_CONTACTS_MAX);
-  for (int i = 0; i < STIC_LOG_CONTACTS && i < r->contact_count; i++)
-    take_contact(row, &r->contacts[i]);
+  for (int i = 0; i < STIC_LOG_CONTACTS; i++) {
+    if (i < r->contact_count)
+      take_contact(row, &r->contacts[i]);
+    else
+      take_nothing(row, CONTACT_COLUMNS);
+  }
 }
 
 stic_status stic_log_next(stic_log_reader *r, stic_result *result, bool *more, stic_error *err)

@@ -220,8 +220,10 @@ stic_trace_status stic_trace_next(stic_trace_reader *r, stic_sample *sample, sti
                      strerror(errno));
       return STIC_TRACE_BAD;
     case STIC_LINE_UNFINISHED:
-      BAD(r, &problem, "the last line has no end and is dropped");
       r->cut = true;
+      if (r->samples == 0) /* an error follows */
+        continue;
+      BAD(r, &problem, "the last line has no end and is dropped");
       report(r, true, &problem);
       continue;
     case STIC_LINE_READ:
