@@ -216,9 +216,7 @@ static bool read_all(int fd, char *text, size_t *length)
   while (*length <= FILE_MAX_BYTES) {
     const ssize_t n = read(fd, text + *length, (size_t)FILE_MAX_BYTES + 1 - *length);
 
-    if (n < 0 && errno == EINTR)
-      continue;
-    if (n < 0)
+    if (n < 0) /* also by a signal: only a pipe can be interrupted, and it may never be written to */
       return false;
     if (n == 0)
       break;

@@ -28,7 +28,7 @@ TRACE_HEAD = "# stiction-trace 1\nt,x,y,z,qx,qy,qz,qw,buttons\n"
 
 
 def rows(count, rate=100, start=0):
-    return "".join(f"{(start + i) / rate:.9f},{0.1 + 0.0001 * (i % 500):.6f},{0.16 - 0.0001 * (i % 1000):.6f},0,"
+    return "".join(f"{(start + i) / rate:.9f},{0.1 + 0.0001 * (i % 500):.6f},{max(0.05, 0.16 - 0.001 * i):.6f},0,"
                    f"0,0,0.1736,0.9848,1\n" for i in range(count))
 
 

@@ -1,0 +1,134 @@
+"""SIGINT, SIGTERM and SIGHUP at any moment: every output whole or absent, nothing temporary left, exit code 128 + n (run:
+0). The delays sweep the program's own time, measured first; what is asserted holds at any of them."""
+import os
+import shutil
+import signal
+import subprocess
+import time
+
+from common import SCENE, TRACE_HEAD, check, finish, folder, leftovers, path, read, rows, run, start, wait, write
+
+TURNS = int(os.environ.get("TURNS", "5"))  # per command; more on request
+scene = write("scene.yaml", SCENE)
+trace = write("hand.csv", TRACE_HEAD + rows(200))
+long_trace = write("long.csv", TRACE_HEAD + rows(60000))
+log = path("good.log")
+assert run("replay", scene, trace, "--log", log).code == 0
+device = "trace:speed=1000000,file=" + long_trace
+temporary = path("tmp")
+os.mkdir(temporary)
+os.environ["TMPDIR"] = temporary  # where plot works
+
+# What an output that is whole looks like: its end.
+ENDS = {".csv": lambda d: d.endswith(b"\n"), ".log": lambda d: d.endswith(b"\n"), ".json": lambda d: d.endswith(b"}\n"),
+        ".png": lambda d: d.endswith(b"IEND\xaeB`\x82"), ".html": lambda d: d.rstrip().endswith(b"</html>"),
+        ".svg": lambda d: d.rstrip().endswith(b"</svg>"), ".mkv": lambda d: d.startswith(b"\x1aE\xdf\xa3")}
+
+video = ["--video", "OUT/v.mkv"] if run("replay", scene, trace, "--size", "160x120", "--video", path("v.mkv"),
+                                        before=None).code == 0 else []
+COMMANDS = {
+    "replay": ["replay", scene, trace, "--log", "OUT/l.log", "--events", "OUT/e.csv", "--timing", "OUT/t.json",
+               "--frames", "OUT/frames", "--size", "160x120", "--report", "OUT/r.html", *video],
+    "replay-long": ["replay", scene, long_trace, "--log", "OUT/l.log", "--events", "OUT/e.csv"],
+    "still": ["still", scene, trace, "--sheet", "--out", "OUT/s.png"],
+    "plot": ["plot", log, "--figure", "all", "--out", "OUT/plots", "--format", "svg"],
+    "check": ["check", scene, long_trace],
+    "explain": ["explain", scene, long_trace],
+    "trade": ["bench", "trade", "--quick", scene, trace, "--csv", "OUT/trade.csv"],
+    "validate": ["bench", "validate", "--quick", "--csv", "OUT/validate.csv"],
+    "run": ["run", scene, "--device", device, "--log", "OUT/l.log", "--events", "OUT/e.csv", "--timing", "OUT/t.json",
+            "--record", "OUT/record.csv"],
+}
+
+
+def signalled(name, out, after, number):
+    """Starts, signals after a while, and waits."""
+    process = start([a.replace("OUT", out) for a in COMMANDS[name]], before=None, stdout=subprocess.PIPE)
+    time.sleep(after)
+    process.send_signal(number)
+    return wait(process)
+
+
+def judge(name, what, done, number, out):
+    files = [os.path.join(at, n) for at, _, names in os.walk(out) for n in names]
+    early = done.code == 1000 + number and not files  # before main() could catch anything
+    # It may have ended before; run ends with 0 once it has begun.
+    check(f"{what}: code", done.code in (0, 128 + number) or early, done)
+    check(f"{what}: quiet", done.code == 0 or not done.lines or name == "run", done)
+    check(f"{what}: no sanitizer", "Sanitizer" not in done.err and "runtime error" not in done.err, done)
+    for file in files:
+        whole = ENDS[os.path.splitext(file)[1]](read(file))
+        check(f"{what}: {os.path.basename(file)} is whole", whole, os.path.getsize(file))
+    if done.code == 128 + number and name not in ("run", "plot"):
+        check(f"{what}: no output", not files, files)
+    if name == "run" and os.path.exists(out + "/record.csv") and done.code == 0:
+        same = read(out + "/record.csv").count(b"\n") - 3 == read(out + "/l.log").count(b"\n") - 7
+        check(f"{what}: as many rows as samples", same, done)
+    pictures = [f for f in files if "/frames/" in f]
+    check(f"{what}: all pictures or none", len(pictures) in (0, 62), len(pictures))
+    left = leftovers() + [os.path.join(temporary, n) for n in os.listdir(temporary)]
+    check(f"{what}: nothing left", not left, left)
+    for file in left:
+        shutil.rmtree(file, ignore_errors=True)
+
+
+def sweep(name):
+    out = path("out")
+    shutil.rmtree(out, ignore_errors=True)
+    os.mkdir(out)
+    begun = time.monotonic()
+    done = run(*[a.replace("OUT", out) for a in COMMANDS[name]], before=None)
+    length = time.monotonic() - begun
+    check(f"{name}: undisturbed", done.code == 0, done)
+    ended = 0
+    for i in range(TURNS):
+        number = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)[i % 3]
+        shutil.rmtree(out)
+        os.mkdir(out)
+        after = length * (i + 0.5) / TURNS
+        done = signalled(name, out, after, number)
+        judge(name, f"{name}, {signal.Signals(number).name} after {after * 1000:.0f} of {length * 1000:.0f} ms", done,
+              number, out)
+        ended += done.code > 128
+    check(f"{name}: some were ended", ended > 0 or name == "run", ended)
+
+
+def waiting_readers():
+    """Nobody writes the pipe that they read: a signal still ends them."""
+    pipe = path("pipe")
+    os.mkfifo(pipe)
+    commands = [["replay", scene, pipe], ["check", scene, pipe], ["check", pipe], ["explain", scene, pipe],
+                ["plot", pipe, "--out", path("p.svg"), "--figure", "9"], ["bench", "trade", scene, pipe],
+                ["still", scene, pipe, "--at", "0", "--out", path("p.png")],
+                ["run", scene, "--device", "trace:file=" + pipe]]
+    for command in commands:
+        for open_first in (False, True):
+            process = start(command, before=None)
+            fd = os.open(pipe, os.O_WRONLY) if open_first else -1
+            time.sleep(0.15)
+            process.terminate()
+            done = wait(process, 10)
+            if fd >= 0:
+                os.close(fd)
+            what = " ".join(command).replace(folder, ".") + (", opened" if open_first else "")
+            # Opening a device is not yet running.
+            want = (0, 143) if command[0] == "run" else (143,)
+            check(f"{what}: ended", done.code in want, done)
+            check(f"{what}: nothing left", not leftovers(), leftovers())
+
+
+def a_gap_of_years():
+    """Pictures of a trace with a gap that would take for ever to draw."""
+    gap = write("gap.csv", TRACE_HEAD + rows(2) + rows(2, rate=1, start=3000000000))
+    process = start(["replay", scene, gap, "--frames", path("gap"), "--size", "160x120"], before=None)
+    time.sleep(1)
+    process.terminate()
+    done = wait(process, 20)
+    check("a gap of years can be ended", done.code == 143 and not os.path.exists(path("gap")), done)
+
+
+for command in COMMANDS:
+    sweep(command)
+waiting_readers()
+a_gap_of_years()
+finish()
