@@ -65,7 +65,9 @@ void stic_watch_lost(stic_watch *w, int64_t now_ns)
 
 struct stic_supervisor {
   const stic_driver *driver;
-  stic_device *device; /* NULL while lost */
+  stic_device *device;           /* NULL while lost */
+  int64_t (*now)(void *context); /* the device's own clock if it is a recording, else NULL */
+  void *now_context;
   stic_supervisor_options options;
   stic_watch watch;
   stic_connection state, reported;
@@ -103,6 +105,14 @@ static void set_state(stic_supervisor *s, stic_connection state)
   }
 }
 
+static void begin(stic_supervisor *s)
+{
+  s->driver = s->device->driver;
+  s->reported = STIC_CONNECTION_CLOSED;
+  stic_device_describe(s->device, s->description, sizeof s->description);
+  stic_watch_begin(&s->watch, s->driver->silence, s->driver->silence_ns);
+}
+
 stic_status stic_supervisor_open(const char *spec_text, const stic_supervisor_options *options,
                                  stic_supervisor **supervisor, stic_error *err)
 {
@@ -120,12 +130,31 @@ stic_status stic_supervisor_open(const char *spec_text, const stic_supervisor_op
   strcpy(s->spec, spec_text); /* it was parsed, so it fits */
   if (options)
     s->options = *options;
-  s->driver = s->device->driver;
-  s->reported = STIC_CONNECTION_CLOSED;
-  stic_device_describe(s->device, s->description, sizeof s->description);
-  stic_watch_begin(&s->watch, s->driver->silence, s->driver->silence_ns);
+  begin(s);
   *supervisor = s;
   return STIC_OK;
+}
+
+stic_status stic_supervisor_adopt(stic_device *device, int64_t (*now)(void *context), void *context,
+                                  stic_supervisor **supervisor, stic_error *err)
+{
+  stic_supervisor *s = calloc(1, sizeof *s);
+
+  *supervisor = s;
+  if (!s) {
+    stic_device_close(device);
+    return stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
+  }
+  s->device = device;
+  s->now = now;
+  s->now_context = context;
+  begin(s);
+  return STIC_OK;
+}
+
+static int64_t now_of(const stic_supervisor *s)
+{
+  return s->now ? s->now(s->now_context) : stic_clock_ns();
 }
 
 static void add_counters(stic_device_counters *sum, const stic_device_counters *part)
@@ -289,6 +318,12 @@ static int follow_silence(stic_supervisor *s, stic_device_sample *sample, int64_
   return 0;
 }
 
+/* A recording is not lost by its silence, so there is nothing to look for after the first event. */
+static int64_t silence_deadline(const stic_supervisor *s)
+{
+  return s->now && s->watch.told ? INT64_MAX : stic_watch_deadline(&s->watch);
+}
+
 int stic_supervisor_poll(stic_supervisor *s, int64_t until_ns, stic_device_sample *samples, int capacity)
 {
   for (;;) {
@@ -297,20 +332,20 @@ int stic_supervisor_poll(stic_supervisor *s, int64_t until_ns, stic_device_sampl
 
     if (!wait_for_device(s, until_ns))
       return is_lost_for_good(s, stic_clock_ns()) ? STIC_DRIVER_LOST : 0;
-    wake_ns = earlier(until_ns, stic_watch_deadline(&s->watch));
+    wake_ns = earlier(until_ns, silence_deadline(s));
     /* Read first, then judge the silence: a loop that was late itself finds the samples waiting. */
     count = stic_device_poll(s->device, wake_ns, samples, capacity);
-    now_ns = stic_clock_ns();
+    now_ns = now_of(s);
     if (count > 0)
       return accept_samples(s, samples, count, now_ns);
-    if (count == STIC_DRIVER_LOST) {
+    if (count == STIC_DRIVER_LOST && !s->now) {
       count = lose(s, samples, now_ns);
-    } else if (count < 0) {
+    } else if (count < 0 && count != STIC_DRIVER_LOST) {
       s->error = s->device->error;
       s->state = s->device->state;
       return count;
     } else {
-      /* The driver knows its start, the watch what comes after. */
+      /* The driver knows its start, the watch what comes after; a recording that seems lost may go on. */
       if (!s->watch.heard)
         set_state(s, s->device->state);
       count = follow_silence(s, samples, now_ns);

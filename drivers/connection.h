@@ -65,6 +65,12 @@ typedef struct stic_supervisor stic_supervisor;
 stic_status stic_supervisor_open(const char *spec_text, const stic_supervisor_options *options,
                                  stic_supervisor **supervisor, stic_error *err);
 
+/* Supervises a device that is open already and is a recording: time is what `now` says (called with `context`), and
+ * silence is judged as it would have been, but nothing is ever closed and opened again. The supervisor owns the device
+ * from then on, also on failure (STIC_NO_MEMORY). Real-time: no. */
+stic_status stic_supervisor_adopt(stic_device *device, int64_t (*now)(void *context), void *context,
+                                  stic_supervisor **supervisor, stic_error *err);
+
 /* As stic_device_poll(), times increasing strictly, also across a reconnection. STIC_DRIVER_LOST only when
  * lost for good, with stic_supervisor_error(). Real-time: yes, but for opening a device again, which
  * allocates and happens only while there is none. */

@@ -21,6 +21,12 @@ struct stic_raw_reader {
   stic_line_reader *lines;
   bool kind_known;
   bool begun; /* a record has been given out */
+  bool lenient;
+  void (*report)(void *context, const stic_error *problem); /* may be NULL */
+  void *report_context;
+  int64_t skipped;
+  bool held; /* `record` is to be given out again */
+  stic_raw_record record;
   stic_raw_kind kind;
   int device; /* that the lines are about */
   int64_t last_ns;
@@ -42,6 +48,19 @@ stic_status stic_raw_open(const char *path, stic_raw_reader **reader, stic_error
   else
     *reader = r;
   return status;
+}
+
+void stic_raw_be_lenient(stic_raw_reader *reader, void (*report)(void *context, const stic_error *problem),
+                         void *context)
+{
+  reader->lenient = true;
+  reader->report = report;
+  reader->report_context = context;
+}
+
+int64_t stic_raw_skipped(const stic_raw_reader *reader)
+{
+  return reader->skipped;
 }
 
 void stic_raw_close(stic_raw_reader *reader)
@@ -342,21 +361,39 @@ static stic_raw_status read_line(stic_raw_reader *r, const char *text, size_t le
   return r->kind == STIC_RAW_SERIAL ? read_serial(r, &w, record, err) : read_hid(r, &w, record, err);
 }
 
+/* Whether a bad line is to be passed over: what is no recording at all is not. */
+static bool pass_over(stic_raw_reader *r, const stic_error *problem)
+{
+  if (!r->lenient || !r->kind_known)
+    return false;
+  r->skipped++;
+  if (r->report)
+    r->report(r->report_context, problem);
+  return true;
+}
+
 stic_raw_status stic_raw_next(stic_raw_reader *r, stic_raw_record *record, stic_error *err)
 {
+  stic_error problem;
+
+  if (r->held) {
+    r->held = false;
+    *record = r->record;
+    return STIC_RAW_RECORD;
+  }
   for (;;) {
     const char *text;
     size_t length;
-    stic_raw_status status;
+    stic_raw_status status = STIC_RAW_BAD;
 
     switch (stic_line_reader_next(r->lines, &text, &length)) {
     case STIC_LINE_READ:
-      status = read_line(r, text, length, record, err);
-      if (status != STIC_RAW_WAIT)
+      status = read_line(r, text, length, record, &problem);
+      if (status == STIC_RAW_RECORD)
         return status;
       break;
-    case STIC_LINE_TOO_LONG: return bad(r, err, "the line is longer than %d bytes", STIC_LINE_MAX);
-    case STIC_LINE_UNFINISHED: break;
+    case STIC_LINE_TOO_LONG: bad(r, &problem, "the line is longer than %d bytes", STIC_LINE_MAX); break;
+    case STIC_LINE_UNFINISHED: continue;
     case STIC_LINE_END:
       if (!r->begun)
         return bad(r, err, "the recording holds no records; expected '%s' or a recording by hid-recorder",
@@ -365,7 +402,22 @@ stic_raw_status stic_raw_next(stic_raw_reader *r, stic_raw_record *record, stic_
     case STIC_LINE_WAIT: return STIC_RAW_WAIT;
     case STIC_LINE_FAILED: return bad(r, err, "cannot read: %s", strerror(errno));
     }
+    if (status == STIC_RAW_BAD && !pass_over(r, &problem)) {
+      if (err)
+        *err = problem;
+      return STIC_RAW_BAD;
+    }
   }
+}
+
+stic_raw_status stic_raw_peek(stic_raw_reader *r, stic_raw_record *record, stic_error *err)
+{
+  const stic_raw_status status = stic_raw_next(r, record, err);
+
+  r->held = status == STIC_RAW_RECORD;
+  if (r->held)
+    r->record = *record;
+  return status;
 }
 
 /* ---- writing ----------------------------------------------------------------------------- */

@@ -52,9 +52,17 @@ typedef enum stic_raw_status {
 stic_status stic_raw_open(const char *path, stic_raw_reader **reader, stic_error *err);
 void stic_raw_close(stic_raw_reader *reader); /* NULL allowed */
 
+/* From now on bad lines after the first good one are passed over; `report` (may be NULL) is told about each. */
+void stic_raw_be_lenient(stic_raw_reader *reader, void (*report)(void *context, const stic_error *problem),
+                         void *context);
+int64_t stic_raw_skipped(const stic_raw_reader *reader); /* lines passed over so far */
+
 /* The next record. At most one read() in a call. A last line without its end is dropped. A recording
  * without any record is bad. Real-time: no. */
 stic_raw_status stic_raw_next(stic_raw_reader *reader, stic_raw_record *record, stic_error *err);
+
+/* The same, to be given out by stic_raw_next() once more: for whoever must know the kind first. */
+stic_raw_status stic_raw_peek(stic_raw_reader *reader, stic_raw_record *record, stic_error *err);
 
 /* Known after the first record. */
 stic_raw_kind stic_raw_reader_kind(const stic_raw_reader *reader);

@@ -147,13 +147,17 @@ static stic_status read_first(stic_hid_recording *r, const char *path, stic_erro
   return STIC_OK;
 }
 
-stic_status stic_hid_recording_open(const char *path, stic_hid_recording **recording, stic_error *err)
+stic_status stic_hid_recording_begin(stic_raw_reader *reader, const char *path,
+                                     stic_hid_recording **recording, stic_error *err)
 {
   stic_hid_recording *r = calloc(1, sizeof *r);
   stic_status status;
 
-  if (!r)
+  if (!r) {
+    stic_raw_close(reader);
     return stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
+  }
+  r->reader = reader;
   r->transport = (stic_hid_transport){.name = "recording",
                                       .context = r,
                                       .enumerate = recording_enumerate,
@@ -164,15 +168,21 @@ stic_status stic_hid_recording_open(const char *path, stic_hid_recording **recor
                                       .get_feature = recording_get,
                                       .close = recording_release,
                                       .now = recording_now};
-  status = stic_raw_open(path, &r->reader, err);
-  if (status == STIC_OK)
-    status = read_first(r, path, err);
+  status = read_first(r, path, err);
   if (status != STIC_OK) {
     stic_hid_recording_close(r);
     return status;
   }
   *recording = r;
   return STIC_OK;
+}
+
+stic_status stic_hid_recording_open(const char *path, stic_hid_recording **recording, stic_error *err)
+{
+  stic_raw_reader *reader;
+  const stic_status status = stic_raw_open(path, &reader, err);
+
+  return status == STIC_OK ? stic_hid_recording_begin(reader, path, recording, err) : status;
 }
 
 void stic_hid_recording_close(stic_hid_recording *recording)

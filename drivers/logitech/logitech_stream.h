@@ -7,7 +7,8 @@
 #include "logitech_decode.h"
 
 #define STIC_LOGITECH_PERIOD_NS 20000000 /* between two records, at most 50 a second */
-#define STIC_LOGITECH_BYTE_NS 520833     /* on the wire: 10 bits at 19200 baud */
+#define STIC_LOGITECH_SILENCE_NS (3 * (int64_t)STIC_LOGITECH_PERIOD_NS)
+#define STIC_LOGITECH_BYTE_NS 520833 /* on the wire: 10 bits at 19200 baud */
 #define STIC_LOGITECH_WIRE_NS (STIC_LOGITECH_RECORD * (int64_t)STIC_LOGITECH_BYTE_NS)
 
 /* Worn mice tell a wrong button at the moment of pressing; so many equal records count. */
