@@ -82,7 +82,7 @@ int stic_supervisor_send(stic_supervisor *supervisor, const stic_device_output *
 /* Real-time: yes. */
 stic_connection stic_supervisor_state(const stic_supervisor *supervisor);
 const stic_driver *stic_supervisor_driver(const stic_supervisor *supervisor);
-/* The device, NULL while lost; another one after a reconnection. For drivers that are fed (mouse). */
+/* The device, to be fed (mouse) or looked at; NULL while there is none, another one after a reconnection. */
 stic_device *stic_supervisor_device(const stic_supervisor *supervisor);
 /* Over all connections so far. */
 stic_device_counters stic_supervisor_counters(const stic_supervisor *supervisor);

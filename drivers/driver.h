@@ -97,12 +97,16 @@ typedef struct stic_device_output {
 
 typedef struct stic_driver stic_driver;
 
+#define STIC_RAW_SHOWN_MAX 64 /* bytes */
+
 /* Start of every driver's own struct. Fields are read-only outside the driver. */
 typedef struct stic_device {
   const stic_driver *driver;
   stic_connection state;
   stic_device_counters counters;
-  stic_error error; /* why poll() returned LOST or BAD_DATA */
+  stic_error error;                /* why poll() returned LOST or BAD_DATA */
+  size_t raw_length;               /* of `raw`; 0: nothing came yet, or the driver does not tell */
+  uint8_t raw[STIC_RAW_SHOWN_MAX]; /* the last bytes that came, cut, for people to look at */
 } stic_device;
 
 struct stic_driver {
@@ -148,5 +152,8 @@ int stic_device_poll(stic_device *device, int64_t until_ns, stic_device_sample *
 int stic_device_send(stic_device *device, const stic_device_output *output);
 void stic_device_describe(const stic_device *device, char *out, size_t out_size);
 void stic_device_close(stic_device *device); /* NULL allowed */
+
+/* For drivers: keeps the beginning of what came in `device->raw`. Real-time: yes. */
+void stic_device_show_raw(stic_device *device, const uint8_t *bytes, size_t length);
 
 #endif

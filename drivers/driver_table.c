@@ -5,6 +5,7 @@
 #include "hydra/hydra_driver.h"
 #include "logitech/logitech_driver.h"
 #include "mouse/mouse_driver.h"
+#include "recording/recording_driver.h"
 #include "sample/sample_driver.h"
 #include "spacemouse/spacemouse_driver.h"
 #include "trace/trace_driver.h"
@@ -15,8 +16,8 @@
 
 /* In the order in which they are listed and asked to match. */
 static const stic_driver *const drivers[] = {
-  &stic_spacemouse_driver, &stic_hydra_driver, &stic_gamepad_driver, &stic_logitech_driver,
-  &stic_mouse_driver,      &stic_trace_driver, &stic_sample_driver,
+  &stic_spacemouse_driver, &stic_hydra_driver, &stic_gamepad_driver,   &stic_logitech_driver,
+  &stic_mouse_driver,      &stic_trace_driver, &stic_recording_driver, &stic_sample_driver,
 };
 
 #define DRIVER_COUNT ((int)(sizeof drivers / sizeof drivers[0]))
@@ -99,4 +100,10 @@ void stic_device_close(stic_device *device)
 {
   if (device)
     device->driver->close(device);
+}
+
+void stic_device_show_raw(stic_device *device, const uint8_t *bytes, size_t length)
+{
+  device->raw_length = length < sizeof device->raw ? length : sizeof device->raw;
+  memcpy(device->raw, bytes, device->raw_length);
 }

@@ -176,6 +176,11 @@ int64_t stic_recorded_skipped(const stic_recorded *r)
   return stic_raw_skipped(r->reader);
 }
 
+const stic_device *stic_recorded_device(const stic_recorded *r)
+{
+  return r->device;
+}
+
 void stic_recorded_describe(const stic_recorded *r, char *out, size_t out_size)
 {
   stic_supervisor_describe(r->supervisor, out, out_size);

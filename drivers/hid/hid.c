@@ -206,6 +206,7 @@ int stic_hid_drain(stic_hid_link *link, stic_device *device, stic_hid_take take,
     if (length == 0)
       break;
     reports++;
+    stic_device_show_raw(device, report, (size_t)length);
     record(link, device, report, (size_t)length, t_ns);
     if (take(device, link, report, (size_t)length, t_ns, &samples[count]))
       count++;

@@ -134,6 +134,7 @@ static bool read_input(logitech_device *d)
   d->filled = n > 0 ? (size_t)n : 0;
   if (n > 0) {
     d->arrival_ns = stic_clock_ns();
+    stic_device_show_raw(&d->base, d->input, d->filled);
     record(d);
   }
   return n >= 0;

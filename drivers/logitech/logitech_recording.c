@@ -33,6 +33,7 @@ static int read_record(recorded_logitech *d)
     case STIC_RAW_RECORD:
       d->pending = true;
       d->taken = 0;
+      stic_device_show_raw(&d->base, d->next.bytes, d->next.length);
       break;
     case STIC_RAW_WAIT: break;
     case STIC_RAW_END: d->base.state = STIC_CONNECTION_CLOSED; return STIC_DRIVER_END;

@@ -17,6 +17,7 @@ int stic_cmd_still(int argc, const char **argv);
 int stic_cmd_bench(int argc, const char **argv);
 int stic_cmd_explain(int argc, const char **argv);
 int stic_cmd_plot(int argc, const char **argv);
+int stic_cmd_monitor(int argc, const char **argv);
 int stic_cmd_convert(int argc, const char **argv);
 int stic_cmd_devices(int argc, const char **argv);
 

@@ -14,6 +14,7 @@ static const command commands[] = {
   {"replay", stic_cmd_replay, "solve a trace, as fast as it can: log, events, timing, pictures, a page"},
   {"run", stic_cmd_run, "solve a device's samples in real time"},
   {"devices", stic_cmd_devices, "what is connected, what to type for it, and what stops it from opening"},
+  {"monitor", stic_cmd_monitor, "a tracker's pose, buttons, rate and state, live in the terminal"},
   {"convert", stic_cmd_convert, "raw recordings of devices and pose files (TUM, EuRoC) into traces"},
   {"check", stic_cmd_check, "tell all errors and warnings of a scene and a trace"},
   {"explain", stic_cmd_explain, "say which parts of the model a scene can need, and why"},

@@ -117,6 +117,7 @@ static void test_bad_trace(void **state)
   assert_int_equal(stic_device_open(spec, &device, NULL), STIC_OK);
   assert_int_equal(stic_device_poll(device, 0, &sample, 1), STIC_DRIVER_BAD_DATA);
   assert_int_equal(device->error.line, 2);
+  assert_int_equal(stic_device_poll(device, 0, &sample, 1), STIC_DRIVER_BAD_DATA); /* each time */
   assert_int_equal(stic_device_send(device, &(const stic_device_output){true}), STIC_DRIVER_UNSUPPORTED);
   stic_device_close(device);
 }
