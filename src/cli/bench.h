@@ -12,6 +12,16 @@ int stic_bench_render(bool quick);
  * have; anything but 1 must fail. */
 int stic_bench_validate(bool quick, const char *csv, double spoil);
 
+typedef struct stic_bench_devices_options {
+  bool quick;
+  double seconds;  /* of the latency's measurement, at the device's own rate; 0: 60, quick 2 */
+  const char *csv; /* NULL: none */
+} stic_bench_devices_options;
+
+/* What decoding costs, how long a sample takes to its result, and whether any is lost on its way to the recorder:
+ * STIC_FAILED if so. */
+int stic_bench_devices(const stic_bench_devices_options *options);
+
 typedef struct stic_trade_options {
   bool quick;
   const char *scene, *trace; /* both NULL: those of traces/, or one built in */

@@ -26,6 +26,7 @@
 typedef struct stic_live_row {
   stic_sample sample;
   stic_result result;
+  int64_t solved_ns;        /* CLOCK_MONOTONIC, when the solver had it */
   const stic_event *events; /* of this row; none if they were not asked for */
   int event_count;
 } stic_live_row;

@@ -36,6 +36,7 @@ typedef struct live_status {
 #define STIC_LIVE_RESULT_SIZE (offsetof(stic_result, contacts) + STIC_LOG_CONTACTS * sizeof(stic_contact))
 typedef struct live_row {
   stic_sample sample;
+  int64_t solved_ns;
   int event_count;
   unsigned char result[STIC_LIVE_RESULT_SIZE];
 } live_row;

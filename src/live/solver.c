@@ -28,6 +28,7 @@ static void queue_row(stic_live *live, const stic_sample *sample, const stic_res
   live_row *row = stic_ring_slot(live->rows);
 
   row->sample = *sample;
+  row->solved_ns = stic_clock_ns();
   row->event_count = 0;
   memcpy(row->result, result, offsetof(stic_result, contacts) + (size_t)listed * sizeof(stic_contact));
   if (live->events) {

@@ -28,6 +28,7 @@ static void gather(stic_live *live, const live_row *from)
   live_writer *w = &live->writer;
 
   w->row.sample = from->sample;
+  w->row.solved_ns = from->solved_ns;
   memcpy(&w->row.result, from->result, sizeof from->result);
   w->row.events = w->gathered;
   w->row.event_count = from->event_count;

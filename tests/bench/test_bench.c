@@ -59,9 +59,24 @@ static void wrong_usage(void **state)
   assert_int_equal(stic_test_program("bench", "validate", "--plot", "x", NULL)->code, 2);
   assert_int_equal(stic_test_program("bench", "speed", "--csv", "x", NULL)->code, 2);
   assert_int_equal(stic_test_program("bench", "trade", "x.yaml", NULL)->code, 2);
+  assert_int_equal(stic_test_program("bench", "speed", "--seconds", "1", NULL)->code, 2);
+  assert_int_equal(stic_test_program("bench", "devices", "--seconds", "-1", NULL)->code, 2);
   assert_int_equal(stic_test_program("explain", NULL)->code, 2);
   assert_int_equal(stic_test_program("bench", "validate", "--quick", "--csv", "/nowhere/x.csv", NULL)->code,
                    5);
+}
+
+static void devices_lose_nothing(void **state)
+{
+  const char *csv = stic_test_path("devices.csv");
+  const stic_test_run *run =
+    stic_test_program("bench", "devices", "--quick", "--seconds", "1", "--csv", csv, NULL);
+
+  (void)state;
+  if (run->code != 0)
+    fail_msg("exit code %d: %s", run->code, run->err);
+  stic_test_contains(run->out, "of 6000 records lost: 0 on the way, 0 in the recording");
+  assert_int_equal(count_lines(csv), 1 + 4 + 1 + 1);
 }
 
 static void trade_tells_and_draws(void **state)
@@ -162,8 +177,9 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(validate_passes),      cmocka_unit_test(validate_fails_when_it_must),
     cmocka_unit_test(wrong_usage),          cmocka_unit_test(trade_tells_and_draws),
-    cmocka_unit_test(trade_refuses),        cmocka_unit_test(explain_says_why),
-    cmocka_unit_test(explain_reads_traces), cmocka_unit_test(explain_refuses),
+    cmocka_unit_test(devices_lose_nothing), cmocka_unit_test(trade_refuses),
+    cmocka_unit_test(explain_says_why),     cmocka_unit_test(explain_reads_traces),
+    cmocka_unit_test(explain_refuses),
   };
 
   return cmocka_run_group_tests(tests, NULL, stic_test_clean_up);
