@@ -61,6 +61,11 @@ void stic_watch_lost(stic_watch *w, int64_t now_ns)
   w->backoff_ns = w->backoff_ns < STIC_BACKOFF_MAX_NS / 2 ? 2 * w->backoff_ns : STIC_BACKOFF_MAX_NS;
 }
 
+bool stic_watch_bars_grip(const stic_watch *w)
+{
+  return w->silence == STIC_SILENCE_STALE;
+}
+
 /* ---- the supervisor ---------------------------------------------------------------------- */
 
 struct stic_supervisor {
@@ -281,9 +286,11 @@ static bool is_lost_for_good(const stic_supervisor *s, int64_t now_ns)
 static void reopen(stic_supervisor *s)
 {
   s->state = STIC_CONNECTION_OPENING;
-  if (stic_device_open(s->spec, &s->device, &s->error) != STIC_OK) {
+  if (stic_device_reopen(s->spec, &s->device, &s->error) != STIC_OK) {
     stic_watch_lost(&s->watch, stic_clock_ns());
     s->state = STIC_CONNECTION_LOST;
+  } else if (!stic_watch_bars_grip(&s->watch)) {
+    s->grip_barred = false;
   }
 }
 

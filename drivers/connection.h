@@ -9,7 +9,7 @@
  *           as long each time up to 5 s, until it works
  *   rest    silence of a STIC_SILENCE_REST device: one sample with rates zero, buttons and tracking as before
  *
- * After STALE and LOST the grip counts again only once it was seen released. */
+ * After STALE and LOST the grip counts again only once it was seen released; of a STIC_SILENCE_REST device at once. */
 #ifndef STIC_CONNECTION_H
 #define STIC_CONNECTION_H
 
@@ -45,6 +45,11 @@ void stic_watch_heard(stic_watch *watch, int64_t now_ns); /* a sample came: also
 stic_watch_event stic_watch_look(stic_watch *watch, int64_t now_ns);
 int64_t stic_watch_deadline(const stic_watch *watch);    /* when to look; INT64_MAX: never */
 void stic_watch_lost(stic_watch *watch, int64_t now_ns); /* sets retry_ns and doubles the wait */
+
+/* Whether, after a loss, a pressed grip is that of before and must be seen released first. A device that is silent at rest
+ * tells its buttons when they change only: what it tells after it was opened again is pressed now, and of a release that
+ * happened meanwhile it will never tell. */
+bool stic_watch_bars_grip(const stic_watch *watch);
 
 /* ---- the supervisor ---------------------------------------------------------------------- */
 

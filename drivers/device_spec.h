@@ -22,6 +22,7 @@ typedef struct stic_spec_pair {
 /* A parsed specification; its strings are inside it, so it must not be copied. */
 typedef struct stic_device_spec {
   const char *name;
+  bool again; /* the device was lost and is opened anew; false as parsed */
   int pair_count;
   stic_spec_pair pairs[STIC_SPEC_PAIRS_MAX];
   char text[STIC_SPEC_MAX];

@@ -68,7 +68,7 @@ typedef enum stic_driver_kind {
 /* What it means when a device says nothing. */
 typedef enum stic_silence {
   STIC_SILENCE_STALE, /* a streaming tracker that stops has lost the hand */
-  STIC_SILENCE_REST   /* silent at rest: rates are zero, the grip stays */
+  STIC_SILENCE_REST /* silent at rest: rates are zero, the grip stays. Tells buttons when they change, and only then */
 } stic_silence;
 
 typedef struct stic_device_counters {
@@ -128,7 +128,8 @@ struct stic_driver {
   stic_status (*open)(const stic_device_spec *spec, stic_device **device, stic_error *err);
 
   /* Waits for samples until there is one or `until_ns` (CLOCK_MONOTONIC; the past: does not wait), or a
-   * signal comes. Gives out all that is there up to `capacity` (>= 1), oldest first: the number, 0, or one of
+   * signal comes; a device that gives no samples may in its start cost a control transfer's time on top, at most
+   * 10 s by the kernel's own limits. Gives out all that is there up to `capacity` (>= 1), oldest first: the number, 0, or one of
    * STIC_DRIVER_. */
   int (*poll)(stic_device *device, int64_t until_ns, stic_device_sample *samples, int capacity);
 
@@ -148,6 +149,8 @@ const stic_driver *stic_driver_at(int index);
 /* Reads NAME[:key=value,...], finds the driver and opens the device. STIC_USAGE for what cannot be
  * meant, else as open(). */
 stic_status stic_device_open(const char *spec_text, stic_device **device, stic_error *err);
+/* The same after a loss: raw recordings go on instead of beginning anew. */
+stic_status stic_device_reopen(const char *spec_text, stic_device **device, stic_error *err);
 int stic_device_poll(stic_device *device, int64_t until_ns, stic_device_sample *samples, int capacity);
 int stic_device_send(stic_device *device, const stic_device_output *output);
 void stic_device_describe(const stic_device *device, char *out, size_t out_size);

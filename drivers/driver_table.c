@@ -53,7 +53,7 @@ static const stic_driver *find_driver(const char *name, stic_error *err)
   return NULL;
 }
 
-stic_status stic_device_open(const char *spec_text, stic_device **device, stic_error *err)
+static stic_status open_device(const char *spec_text, bool again, stic_device **device, stic_error *err)
 {
   stic_device_spec spec;
   const stic_driver *driver;
@@ -62,6 +62,7 @@ stic_status stic_device_open(const char *spec_text, stic_device **device, stic_e
   *device = NULL;
   if (status != STIC_OK)
     return status;
+  spec.again = again;
   driver = find_driver(spec.name, err);
   if (!driver)
     return STIC_USAGE;
@@ -70,6 +71,16 @@ stic_status stic_device_open(const char *spec_text, stic_device **device, stic_e
     status = driver->open(&spec, device, err);
   assert((status == STIC_OK) == (*device != NULL));
   return status;
+}
+
+stic_status stic_device_open(const char *spec_text, stic_device **device, stic_error *err)
+{
+  return open_device(spec_text, false, device, err);
+}
+
+stic_status stic_device_reopen(const char *spec_text, stic_device **device, stic_error *err)
+{
+  return open_device(spec_text, true, device, err);
 }
 
 int stic_device_poll(stic_device *device, int64_t until_ns, stic_device_sample *samples, int capacity)

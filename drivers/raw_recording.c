@@ -15,7 +15,8 @@
 #include <unistd.h>
 
 #define FORMAT_VERSION 1
-#define US 1000 /* ns */
+#define US 1000                         /* ns */
+#define CLOCK_MARK "# the clock at 0: " /* ns; what a HID recording's times are counted from */
 
 struct stic_raw_reader {
   stic_line_reader *lines;
@@ -30,6 +31,8 @@ struct stic_raw_reader {
   stic_raw_kind kind;
   int device; /* that the lines are about */
   int64_t last_ns;
+  bool clock_known; /* a HID recording says what its times are counted from: */
+  int64_t clock_ns;
   uint8_t bytes[STIC_RAW_BYTES_MAX];
   stic_raw_device devices[STIC_RAW_DEVICES_MAX];
 };
@@ -344,6 +347,15 @@ static stic_raw_status learn_kind(stic_raw_reader *r, const char *text, size_t l
   return STIC_RAW_WAIT;
 }
 
+static void read_clock(stic_raw_reader *r, const char *text, size_t length)
+{
+  const size_t mark = sizeof CLOCK_MARK - 1;
+
+  if (length > mark && memcmp(text, CLOCK_MARK, mark) == 0)
+    r->clock_known = stic_number_parse_integer(text + mark, length - mark, INT64_MIN, INT64_MAX,
+                                               &r->clock_ns) == STIC_NUMBER_OK;
+}
+
 /* One line: a record, or STIC_RAW_WAIT for any other. */
 static stic_raw_status read_line(stic_raw_reader *r, const char *text, size_t length, stic_raw_record *record,
                                  stic_error *err)
@@ -356,8 +368,10 @@ static stic_raw_status read_line(stic_raw_reader *r, const char *text, size_t le
     if (status != STIC_RAW_WAIT || !r->kind_known)
       return status;
   }
-  if (length == 0 || text[0] == '#')
+  if (length == 0 || text[0] == '#') {
+    read_clock(r, text, length);
     return STIC_RAW_WAIT;
+  }
   return r->kind == STIC_RAW_SERIAL ? read_serial(r, &w, record, err) : read_hid(r, &w, record, err);
 }
 
@@ -501,29 +515,72 @@ static stic_status write_head(stic_raw_writer *w, const stic_raw_device *device,
   return status;
 }
 
-stic_status stic_raw_create(const char *path, stic_raw_kind kind, const stic_raw_device *device,
-                            stic_raw_writer **writer, stic_error *err)
+/* Cuts a line without its end, as a full disk leaves it. */
+static bool cut_last_line(int fd)
+{
+  off_t end = lseek(fd, 0, SEEK_END);
+  char c = '\n';
+
+  while (end > 0 && pread(fd, &c, 1, end - 1) == 1 && c != '\n')
+    end--;
+  return end >= 0 && ftruncate(fd, end) == 0;
+}
+
+/* Goes on with a recording; false if there is none of this kind, or its clock is not told. */
+static bool resume(stic_raw_writer *w, const char *path)
+{
+  stic_raw_reader *reader;
+  stic_raw_record record;
+  stic_raw_status status;
+  bool good;
+
+  if (stic_raw_open(path, &reader, NULL) != STIC_OK)
+    return false;
+  do
+    status = stic_raw_next(reader, &record, NULL);
+  while (status == STIC_RAW_WAIT);
+  good = status == STIC_RAW_RECORD && reader->kind == w->kind &&
+         (w->kind == STIC_RAW_SERIAL || reader->clock_known);
+  w->start_ns = reader->clock_ns;
+  w->begun = true;
+  w->device = -1; /* whose line came last is not known */
+  stic_raw_close(reader);
+  w->fd = good ? open(path, O_RDWR | O_APPEND | O_CLOEXEC) : -1;
+  return w->fd >= 0 && cut_last_line(w->fd);
+}
+
+static stic_status begin_writer(stic_raw_writer *w, const char *path, const stic_raw_device *device,
+                                bool again, stic_error *err)
 {
   const bool standard_output = strcmp(path, "-") == 0;
-  stic_raw_writer *w = malloc(sizeof *w);
+
+  w->owned = !standard_output;
+  if (again && (standard_output ? w->kind == STIC_RAW_SERIAL : resume(w, path))) {
+    w->fd = standard_output ? STDOUT_FILENO : w->fd;
+    return STIC_OK;
+  }
+  w->begun = false;
+  w->device = 0;
+  w->fd = standard_output ? STDOUT_FILENO : open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (w->fd < 0)
+    return stic_error_set(err, STIC_CANNOT_WRITE, path, 0, "cannot write: %s", strerror(errno));
+  return write_head(w, device, err);
+}
+
+stic_status stic_raw_create(const char *path, stic_raw_kind kind, const stic_raw_device *device, bool again,
+                            stic_raw_writer **writer, stic_error *err)
+{
+  stic_raw_writer *w = calloc(1, sizeof *w);
   stic_status status;
 
   assert((kind == STIC_RAW_HID) == (device != NULL));
   *writer = NULL;
   if (!w)
     return stic_error_set(err, STIC_NO_MEMORY, path, 0, "out of memory");
-  w->fd = standard_output ? STDOUT_FILENO : open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  w->owned = !standard_output;
-  w->begun = false;
+  w->fd = -1;
   w->kind = kind;
-  w->device = 0;
-  snprintf(w->path, sizeof w->path, "%s", standard_output ? "standard output" : path);
-  if (w->fd < 0) {
-    status = stic_error_set(err, STIC_CANNOT_WRITE, path, 0, "cannot write: %s", strerror(errno));
-    free(w);
-    return status;
-  }
-  status = write_head(w, device, err);
+  snprintf(w->path, sizeof w->path, "%s", strcmp(path, "-") == 0 ? "standard output" : path);
+  status = begin_writer(w, path, device, again, err);
   if (status != STIC_OK)
     stic_raw_finish(w, NULL);
   else
@@ -549,8 +606,13 @@ stic_status stic_raw_write(stic_raw_writer *w, int device, int64_t t_ns, const u
         return status;
       w->device = device;
     }
-    if (!w->begun)
+    if (!w->begun) {
+      const stic_status status = write_text(w, err, CLOCK_MARK "%lld", (long long)t_ns);
+
+      if (status != STIC_OK)
+        return status;
       w->start_ns = t_ns;
+    }
     w->begun = true;
     us = (t_ns - w->start_ns) / US;
     n = (size_t)snprintf(w->line, sizeof w->line, "E: %06lld.%06lld %zu", (long long)(us / 1000000),
@@ -566,7 +628,7 @@ stic_status stic_raw_finish(stic_raw_writer *writer, stic_error *err)
 
   if (!writer)
     return STIC_OK;
-  if (writer->owned && close(writer->fd) != 0)
+  if (writer->owned && writer->fd >= 0 && close(writer->fd) != 0)
     status = stic_error_set(err, STIC_CANNOT_WRITE, writer->path, 0, "cannot write: %s", strerror(errno));
   free(writer);
   return status;

@@ -58,7 +58,8 @@ static void make_sample(const gamepad_device *d, const stic_gamepad *pad, int64_
   sample->buttons = pad->buttons;
 }
 
-/* A pad that does not hear is asked again, but not at its report rate. */
+/* A pad that does not hear is asked again, but not at its report rate. The kernel waits for the answer, up to 5 s; so a
+ * Bluetooth pad is asked when it is opened, and in poll() only one that gives no samples anyway. */
 static void ask_for_full_reports(gamepad_device *d, int64_t now_ns)
 {
   uint8_t calibration[CALIBRATION_LENGTH] = {ID_CALIBRATION};
@@ -129,6 +130,8 @@ stic_status stic_gamepad_open(const stic_hid_transport *transport, const stic_de
     return status;
   }
   d->base.state = STIC_CONNECTION_SYNCING;
+  if (strcmp(d->link.node.bus, "bluetooth") == 0)
+    ask_for_full_reports(d, stic_hid_now(&d->link));
   *device = &d->base;
   return STIC_OK;
 }

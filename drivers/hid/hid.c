@@ -120,7 +120,7 @@ static stic_status open_nodes(const stic_hid_transport *transport, const stic_hi
   return STIC_OK;
 }
 
-static stic_status begin_raw(stic_hid_link *first, const char *path, stic_error *err)
+static stic_status begin_raw(stic_hid_link *first, const char *path, bool again, stic_error *err)
 {
   stic_raw_device about = {.bus = strcmp(first->node.bus, "bluetooth") == 0 ? BUS_BLUETOOTH_NUMBER
                                                                             : BUS_USB_NUMBER,
@@ -129,7 +129,7 @@ static stic_status begin_raw(stic_hid_link *first, const char *path, stic_error 
 
   snprintf(about.name, sizeof about.name, "%s", first->node.product_name);
   snprintf(about.place, sizeof about.place, "%.100s", first->node.path);
-  return stic_raw_create(path, STIC_RAW_HID, &about, &first->raw, err);
+  return stic_raw_create(path, STIC_RAW_HID, &about, again, &first->raw, err);
 }
 
 stic_status stic_hid_connect(const stic_hid_transport *transport, const stic_driver *driver,
@@ -148,7 +148,7 @@ stic_status stic_hid_connect(const stic_hid_transport *transport, const stic_dri
     return none_found(driver, spec, transport, err);
   status = open_nodes(transport, nodes, found, links, capacity, count, err);
   if (status == STIC_OK && raw)
-    status = begin_raw(links, raw, err);
+    status = begin_raw(links, raw, spec->again, err);
   if (status != STIC_OK)
     stic_hid_disconnect(links, *count);
   return status;

@@ -79,7 +79,8 @@ static bool take_report(stic_device *device, const stic_hid_link *link, const ui
 /* ---- mode -------------------------------------------------------------------------------- */
 
 /* Some programs send to one interface, some to the other, and both work in the field: take turns. The
- * answer is fetched, as the maker's protocol wants, and thrown away. */
+ * answer is fetched, as the maker's protocol wants, and thrown away. The kernel may wait 5 s for each of the two; in
+ * poll() that happens only after a second without motion, when the hand was let go long ago. */
 static void send_mode(hydra_device *d, bool motion)
 {
   const stic_hid_link *link = &d->links[d->command];

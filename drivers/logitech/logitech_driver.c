@@ -74,7 +74,7 @@ static stic_status logitech_open(const stic_device_spec *spec, stic_device **dev
   stic_logitech_begin(&d->protocol, &port, stic_spec_flag(spec, "head"), stic_clock_ns());
   d->base.state = d->protocol.state;
   if (raw)
-    status = stic_raw_create(raw, STIC_RAW_SERIAL, NULL, &d->raw, err);
+    status = stic_raw_create(raw, STIC_RAW_SERIAL, NULL, spec->again, &d->raw, err);
   if (status != STIC_OK) {
     logitech_close(&d->base);
     return status;

@@ -1,4 +1,5 @@
 /* stiction check: all errors and warnings of a scene and a trace in one go. */
+#include "../../drivers/motion/tracker_yaml.h"
 #include "../error.h"
 #include "../io/trace_csv.h"
 #include "../scene_yaml.h"
@@ -13,9 +14,13 @@ static const stic_cli_usage usage = {
   "there is an error.\n",
   1, 2};
 
+#define LINES_MAX 64
+
 typedef struct findings {
   int64_t errors, warnings;
   stic_status worst; /* what is no fault of a file: usage, memory */
+  int line_count;
+  int64_t lines[LINES_MAX]; /* of the first errors */
 } findings;
 
 static void on_finding(void *context, bool warning, const stic_error *problem)
@@ -28,9 +33,26 @@ static void on_finding(void *context, bool warning, const stic_error *problem)
     return;
   }
   f->errors++;
+  if (f->line_count < LINES_MAX)
+    f->lines[f->line_count++] = problem->line;
   if (problem->status != STIC_BAD_INPUT)
     f->worst = problem->status;
   stic_cli_fail(problem);
+}
+
+/* The scene's section tracker; a line that the scene's own reader has told about is not told again. */
+static void check_tracker(const char *path, findings *f)
+{
+  stic_tracker_settings settings;
+  stic_error err;
+
+  if (stic_tracker_read(path, false, &settings, &err) == STIC_OK)
+    return;
+  for (int i = 0; i < f->line_count; i++) {
+    if (f->lines[i] == err.line)
+      return;
+  }
+  on_finding(f, false, &err);
 }
 
 static void check_trace(const char *path, const stic_scene *scene, findings *f)
@@ -68,7 +90,7 @@ static int check_files(const stic_cli_args *args, char **set)
 {
   stic_override *overrides = NULL;
   int override_count;
-  findings f = {0, 0, STIC_OK};
+  findings f = {0, 0, STIC_OK, 0, {0}};
   stic_scene *scene = malloc(sizeof *scene);
   stic_error err;
   bool scene_good;
@@ -82,6 +104,7 @@ static int check_files(const stic_cli_args *args, char **set)
   }
   scene_good =
     stic_scene_read_all(args->positions[0], overrides, override_count, scene, on_finding, &f) == STIC_OK;
+  check_tracker(args->positions[0], &f);
   if (args->position_count > 1)
     check_trace(args->positions[1], scene_good ? scene : NULL, &f);
   free(overrides);

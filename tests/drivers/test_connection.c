@@ -1,6 +1,7 @@
 /* Silence, back-off, and the supervisor over a real port: stale, unplugged, plugged in again. */
 #define _XOPEN_SOURCE 700 /* symlink() */
 #include "../../drivers/connection.h"
+#include "../../drivers/raw_recording.h"
 #include "../../src/io/timing.h"
 #include "../files/help.h"
 #include "logitech_emulator.h"
@@ -45,9 +46,12 @@ static void test_watch_rest(void **state)
   assert_int_equal(stic_watch_look(&w, S + 100 * MS), STIC_WATCH_REST);
   assert_int_equal(stic_watch_look(&w, 1000 * S), STIC_WATCH_NONE);
   assert_int_equal(stic_watch_deadline(&w), INT64_MAX);
+  /* A press after it was plugged in again is no old one: a key that was let go meanwhile is never told. */
+  assert_false(stic_watch_bars_grip(&w));
   stic_watch_begin(&w, STIC_SILENCE_STALE, 0);
   stic_watch_heard(&w, S);
   assert_int_equal(stic_watch_look(&w, 1000 * S), STIC_WATCH_NONE);
+  assert_true(stic_watch_bars_grip(&w));
   /* Slower than 2 s by nature: never lost before it is stale. */
   stic_watch_begin(&w, STIC_SILENCE_STALE, 3 * S);
   stic_watch_heard(&w, S);
@@ -156,9 +160,10 @@ static stic_supervisor *open_supervised(history *h, int64_t give_up_ns)
   const stic_supervisor_options options = {remember, h, give_up_ns};
   stic_supervisor *s;
   stic_error err;
-  char spec[300];
+  char spec[600];
+  int n = snprintf(spec, sizeof spec, "logitech:port=%s", port_path());
 
-  snprintf(spec, sizeof spec, "logitech:port=%s", port_path());
+  snprintf(spec + n, sizeof spec - (size_t)n, ",raw=%s", stic_test_path("raw.txt"));
   memset(h, 0, sizeof *h);
   assert_int_equal(stic_supervisor_open(spec, &options, &s, &err), STIC_OK);
   return s;
@@ -224,6 +229,24 @@ static void test_stale(void **state)
   assert_true(p.unit.sound_off && !p.unit.wrong_format && p.unit.refused == 0);
 }
 
+/* The raw recording of all connections: how many times are before and after `at_ns`. */
+static void count_recorded(int64_t at_ns, int *before, int *after)
+{
+  stic_raw_reader *reader;
+  stic_raw_record record;
+  stic_raw_status status;
+  stic_error err;
+
+  *before = *after = 0;
+  assert_int_equal(stic_raw_open(stic_test_path("raw.txt"), &reader, &err), STIC_OK);
+  while ((status = stic_raw_next(reader, &record, &err)) == STIC_RAW_RECORD || status == STIC_RAW_WAIT) {
+    if (status == STIC_RAW_RECORD)
+      ++*(record.t_ns < at_ns ? before : after);
+  }
+  assert_int_equal(status, STIC_RAW_END);
+  stic_raw_close(reader);
+}
+
 static void test_unplug_and_replug(void **state)
 {
   plugged p;
@@ -231,6 +254,7 @@ static void test_unplug_and_replug(void **state)
   stic_supervisor *s;
   stic_device_counters counters;
   int64_t at_ns;
+  int before, after;
 
   (void)state;
   emulator_init(&p.unit);
@@ -264,6 +288,9 @@ static void test_unplug_and_replug(void **state)
   assert_true(counters.samples > 50);
   stic_supervisor_close(s);
   unplug(&p);
+  count_recorded(at_ns, &before, &after);
+  print_message("recorded: %d records before, %d after\n", before, after);
+  assert_true(before > 20 && after > 20); /* the first press comes after a second */
   assert_int_equal(h.count, 5);
   assert_int_equal(h.states[3], STIC_CONNECTION_LOST);
   assert_int_equal(h.states[4], STIC_CONNECTION_RUNNING);

@@ -126,9 +126,11 @@ static void test_absent(void **state)
   (void)state;
   assert_int_equal(stic_raw_open("/no/such/file", &reader, &err), STIC_BAD_INPUT);
   assert_null(reader);
-  assert_int_equal(stic_raw_create("/no/such/file", STIC_RAW_SERIAL, NULL, &writer, &err), STIC_CANNOT_WRITE);
+  assert_int_equal(stic_raw_create("/no/such/file", STIC_RAW_SERIAL, NULL, false, &writer, &err),
+                   STIC_CANNOT_WRITE);
   assert_null(writer);
-  assert_int_equal(stic_raw_create("/dev/full", STIC_RAW_SERIAL, NULL, &writer, &err), STIC_CANNOT_WRITE);
+  assert_int_equal(stic_raw_create("/dev/full", STIC_RAW_SERIAL, NULL, false, &writer, &err),
+                   STIC_CANNOT_WRITE);
   assert_null(writer);
 }
 
@@ -194,7 +196,7 @@ static void write_hid(const char *path)
   device.vendor = 0x1532;
   device.product = 0x300;
   device.descriptor_length = STIC_RAW_DESCRIPTOR_MAX;
-  assert_int_equal(stic_raw_create(path, STIC_RAW_HID, &device, &writer, &err), STIC_OK);
+  assert_int_equal(stic_raw_create(path, STIC_RAW_HID, &device, false, &writer, &err), STIC_OK);
   for (int i = 0; i < 100; i++) {
     memset(bytes, i, sizeof bytes);
     assert_int_equal(
@@ -226,6 +228,59 @@ static void test_hid_back(void **state)
   stic_raw_close(reader);
 }
 
+/* Opened again after a loss: it goes on where it was, a line that was cut goes, and times stay on one clock. */
+static void test_goes_on(void **state)
+{
+  const char *path = stic_test_path("again");
+  const int64_t begin_ns = 7000000000000, again_ns = begin_ns + 3000000000;
+  const uint8_t byte = 0x5a;
+
+  (void)state;
+  for (int kind = STIC_RAW_SERIAL; kind <= STIC_RAW_HID; kind++) {
+    stic_raw_device device = {.name = "puck", .bus = 3, .vendor = 0x46d, .product = 0xc626};
+    const stic_raw_device *about = kind == STIC_RAW_HID ? &device : NULL;
+    const int64_t from_ns = kind == STIC_RAW_HID ? begin_ns : 0; /* what times are counted from */
+    stic_raw_writer *writer;
+    stic_raw_reader *reader;
+    stic_raw_record record;
+    stic_error err;
+    FILE *file;
+
+    assert_int_equal(stic_raw_create(path, (stic_raw_kind)kind, about, false, &writer, &err), STIC_OK);
+    for (int i = 0; i < 4; i++)
+      assert_int_equal(
+        stic_raw_write(writer, kind == STIC_RAW_HID ? i % 2 : 0, begin_ns + i * 1000, &byte, 1, &err),
+        STIC_OK);
+    assert_int_equal(stic_raw_finish(writer, &err), STIC_OK);
+    file = fopen(path, "a");
+    fputs("E: 0000", file);
+    fclose(file);
+    assert_int_equal(stic_raw_create(path, (stic_raw_kind)kind, about, true, &writer, &err), STIC_OK);
+    assert_int_equal(stic_raw_write(writer, 0, again_ns, &byte, 1, &err), STIC_OK);
+    assert_int_equal(stic_raw_finish(writer, &err), STIC_OK);
+    assert_int_equal(stic_raw_open(path, &reader, &err), STIC_OK);
+    for (int i = 0; i < 5; i++) {
+      assert_int_equal(stic_raw_next(reader, &record, &err), STIC_RAW_RECORD);
+      assert_int_equal(record.t_ns, (i < 4 ? begin_ns + i * 1000 : again_ns) - from_ns);
+      assert_int_equal(record.device, kind == STIC_RAW_HID && i < 4 ? i % 2 : 0);
+    }
+    assert_int_equal(stic_raw_next(reader, &record, &err), STIC_RAW_END);
+    stic_raw_close(reader);
+  }
+  /* What is no recording of this kind is begun anew. */
+  {
+    stic_raw_writer *writer;
+    stic_error err;
+    char *text;
+
+    assert_int_equal(stic_raw_create(path, STIC_RAW_SERIAL, NULL, true, &writer, &err), STIC_OK);
+    assert_int_equal(stic_raw_finish(writer, &err), STIC_OK);
+    text = stic_test_read(path);
+    assert_string_equal(text, STIC_RAW_FORMAT "\n");
+    free(text);
+  }
+}
+
 /* What the driver's raw=F writes decodes to the same samples as the live bytes. */
 static void test_serial_decodes(void **state)
 {
@@ -245,7 +300,7 @@ static void test_serial_decodes(void **state)
   memset(&replayed, 0, sizeof replayed);
   emulator_init(&unit);
   emulator_receive(&unit, (const uint8_t *)"*S", 2, 1000);
-  assert_int_equal(stic_raw_create(path, STIC_RAW_SERIAL, NULL, &writer, &err), STIC_OK);
+  assert_int_equal(stic_raw_create(path, STIC_RAW_SERIAL, NULL, false, &writer, &err), STIC_OK);
   for (int64_t now_ns = 0; now_ns < 1000000000; now_ns += 3000000) {
     uint8_t bytes[64];
     const size_t n = emulator_send(&unit, now_ns, bytes, sizeof bytes);
@@ -279,7 +334,7 @@ int main(void)
     cmocka_unit_test(test_wrong),          cmocka_unit_test(test_long),
     cmocka_unit_test(test_absent),         cmocka_unit_test(test_cut),
     cmocka_unit_test(test_hid_recorder),   cmocka_unit_test(test_hid_back),
-    cmocka_unit_test(test_serial_decodes),
+    cmocka_unit_test(test_serial_decodes), cmocka_unit_test(test_goes_on),
   };
 
   return cmocka_run_group_tests(tests, NULL, stic_test_clean_up);

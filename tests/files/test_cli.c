@@ -88,6 +88,14 @@ static void test_bad_files(void **state)
   unlink(log);
   expect(stic_test_program("replay", scene, "/nonexistent", NULL), 3, "No such file");
   expect(stic_test_program("check", bad_scene, bad_trace, NULL), 1, "bad.csv:3: found 2 fields");
+  stic_test_contains(stic_test_program("check", "/nonexistent", NULL)->out, "1 error,");
+  {
+    char text[2000];
+
+    snprintf(text, sizeof text, "%stracker:\n  scale: 0\n", stic_test_scene);
+    expect(stic_test_program("check", stic_test_write("tracker.yaml", text), NULL), 1, "tracker.yaml:12: ");
+    stic_test_contains(stic_test_program("check", stic_test_path("tracker.yaml"), NULL)->out, "1 error,");
+  }
   expect(stic_test_program("check", scene, trace, NULL), 0, "");
   stic_test_contains(stic_test_program("check", scene, trace, NULL)->out, "0 errors");
 }

@@ -226,6 +226,21 @@ static void test_bluetooth(void **state)
   stic_device_close(device);
 }
 
+/* A pad that is known to be on Bluetooth is asked when it is opened, not in poll(). */
+static void test_asked_at_open(void **state)
+{
+  stic_fake_hid hid;
+  stic_device *device;
+
+  (void)state;
+  stic_fake_init(&hid);
+  stic_fake_plug(&hid, 0, DUALSENSE);
+  hid.nodes[0].node.bus = "bluetooth";
+  device = stic_fake_open(&hid, "gamepad");
+  assert_int_equal(hid.features_got, 1);
+  stic_device_close(device);
+}
+
 static void test_garbage_and_unplug(void **state)
 {
   stic_fake_hid hid;
@@ -254,12 +269,17 @@ static void test_garbage_and_unplug(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_crc),        cmocka_unit_test(test_rest),
-    cmocka_unit_test(test_sticks),     cmocka_unit_test(test_buttons),
-    cmocka_unit_test(test_hat),        cmocka_unit_test(test_cut),
-    cmocka_unit_test(test_every_byte), cmocka_unit_test(test_run),
-    cmocka_unit_test(test_bluetooth),  cmocka_unit_test(test_garbage_and_unplug)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_crc),
+                                     cmocka_unit_test(test_rest),
+                                     cmocka_unit_test(test_sticks),
+                                     cmocka_unit_test(test_buttons),
+                                     cmocka_unit_test(test_hat),
+                                     cmocka_unit_test(test_cut),
+                                     cmocka_unit_test(test_every_byte),
+                                     cmocka_unit_test(test_run),
+                                     cmocka_unit_test(test_bluetooth),
+                                     cmocka_unit_test(test_asked_at_open),
+                                     cmocka_unit_test(test_garbage_and_unplug)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
