@@ -7,7 +7,7 @@
 
 /* Parts to leave out, where the scene allows it. */
 enum {
-  STIC_LEAVE_HIDDEN = 1, /* surfaces that lie behind others: never touched (needs.c) */
+  STIC_LEAVE_HIDDEN = 1, /* surfaces that lie behind others: never touched (needs.c); f64 and f80 */
   STIC_LEAVE_ODE = 2,    /* ODE's collision detection: the gaps of convex vertices to planes need none */
   STIC_LEAVE_NONE = 0,   /* the full model */
   STIC_LEAVE_ALL = 3     /* what stic_sim_create() does */

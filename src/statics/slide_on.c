@@ -6,7 +6,7 @@
  * against bounds on how fast it can change, piece by piece. */
 #include "statics.h"
 
-enum { GUARDS_MAX = 4 + STIC_VERTICES_MAX };
+enum { GUARDS_MAX = 3 };
 
 #define GRAZING_PIECE (R(1.0) / 1024)
 
@@ -32,9 +32,7 @@ typedef struct sliding_branch {
   vec w;      /* single: t + sigma mu n, the place is w . (h - r) */
   real sigma;
   vec hand_travel;
-  int gap_count; /* single: gaps to other surfaces that depend on the place as well */
-  pair gaps[STIC_VERTICES_MAX];
-  wave gap_waves[STIC_VERTICES_MAX];
+  int gap_count; /* single: gaps to other surfaces that depend on the place as well, in c->gaps */
   real x_max;
 } sliding_branch;
 
@@ -65,7 +63,7 @@ static real curve_rate(const curve *g, real x)
 
 static int guard_count(const sliding_branch *b)
 {
-  return b->contact_count + (b->single ? 1 + b->gap_count : 0);
+  return b->contact_count + (b->single ? 1 : 0);
 }
 
 static sliding_point sliding_at(sliding_branch *b, real s)
@@ -85,15 +83,17 @@ static sliding_point sliding_at(sliding_branch *b, real s)
   real turn_rate = p.stiffness > 0 ? p.pull / p.stiffness : 0; /* of x */
   real place_rate = f->xi_s * r_cos(p.x) - f->xi_c * r_sin(p.x);
   p.guards[1] = b->sigma * (b->shifts[1] - b->shifts[0] + place_rate * turn_rate);
-  for (int k = 0; k < b->gap_count; k++)
-    p.guards[2 + k] = wave_at(&b->gap_waves[k], p.x) + mix(b->shifts[0], s, b->shifts[1]) *
-                                                         v_dot(c->body.surfaces[b->gaps[k].surface].n, f->t);
   return p;
 }
 
-/* Largest rates of the guards over a piece; false if a fold cannot be excluded. */
+static real sliding_gap_at(const sliding_branch *b, const sliding_gap *g, const sliding_point *p)
+{
+  return wave_at(&g->turn, p->x) + mix(b->shifts[0], p->s, b->shifts[1]) * g->along;
+}
+
+/* Largest rates of the guards and of the turn over a piece; false if a fold cannot be excluded. */
 static bool sliding_rates(const sliding_branch *b, const sliding_point *p, const sliding_point *q,
-                          real *rates)
+                          real *rates, real *turn)
 {
   const curve *g = b->drives;
   real first =
@@ -108,7 +108,7 @@ static bool sliding_rates(const sliding_branch *b, const sliding_point *p, const
   if (!(least > 0))
     return false;
   real pull = r_max(r_abs(p->pull), r_abs(q->pull)) + cross * dx;
-  real turn_rate = pull / least, turn_bend = (bend * turn_rate + 2 * cross) * turn_rate / least;
+  real turn_rate = *turn = pull / least, turn_bend = (bend * turn_rate + 2 * cross) * turn_rate / least;
   for (int k = 0; k < b->contact_count; k++) {
     const wave *n0 = &b->normals[0][k], *n1 = &b->normals[1][k];
     real amplitude = r_max(r_abs(n0->c) + r_abs(n0->s), r_abs(n1->c) + r_abs(n1->s));
@@ -120,15 +120,27 @@ static bool sliding_rates(const sliding_branch *b, const sliding_point *p, const
   const path *f = &b->paths[0];
   real xi = r_abs(f->xi_c) + r_abs(f->xi_s);
   rates[1] = xi * (turn_rate * turn_rate + turn_bend);
-  for (int k = 0; k < b->gap_count; k++)
-    rates[2 + k] =
-      (r_abs(b->gap_waves[k].c) + r_abs(b->gap_waves[k].s)) * turn_rate +
-      r_abs((b->shifts[1] - b->shifts[0]) * v_dot(b->c->body.surfaces[b->gaps[k].surface].n, f->t));
   return true;
 }
 
+/* Do all gaps stay open over a piece? *closed: one is closed at its end. */
+static bool gaps_stay_open(const sliding_branch *b, const sliding_point *p, const sliding_point *q,
+                           real turn_rate, bool *closed)
+{
+  bool open = true;
+  for (int k = 0; k < b->gap_count; k++) {
+    const sliding_gap *g = &b->c->gaps[k];
+    real start = sliding_gap_at(b, g, p), end = sliding_gap_at(b, g, q);
+    real rate =
+      (r_abs(g->turn.c) + r_abs(g->turn.s)) * turn_rate + r_abs((b->shifts[1] - b->shifts[0]) * g->along);
+    *closed |= end < 0;
+    open = open && start + end > rate * (q->s - p->s);
+  }
+  return open;
+}
+
 /* What ends a proven stretch, besides the index of a guard. */
-enum { LOST_NONE = -1, LOST_FOLD = -2, LOST_STEPS = -3 };
+enum { LOST_NONE = -1, LOST_FOLD = -2, LOST_STEPS = -3, LOST_GAP = -4 };
 
 /* The last s up to which all guards are proven positive. */
 static real last_sliding(sliding_branch *b, real s_end, int *lost)
@@ -140,8 +152,8 @@ static real last_sliding(sliding_branch *b, real s_end, int *lost)
   *lost = LOST_NONE;
   for (int piece = 0; piece < PIECES && depth > 0; piece++) {
     sliding_point q = stack[depth - 1];
-    real rates[GUARDS_MAX], ds = q.s - p.s, middle = (p.s + q.s) / 2;
-    bool quiet = sliding_rates(b, &p, &q, rates);
+    real rates[GUARDS_MAX] = {0}, turn_rate = 0, ds = q.s - p.s, middle = (p.s + q.s) / 2;
+    bool quiet = sliding_rates(b, &p, &q, rates, &turn_rate), closed = false;
     int bad = quiet ? LOST_NONE : LOST_FOLD;
     for (int k = 0; k < count; k++) {
       if (q.guards[k] < 0 && (p.guards[k] > 0 || k != 1 || !b->single))
@@ -150,6 +162,8 @@ static real last_sliding(sliding_branch *b, real s_end, int *lost)
       bool grazes = k < b->contact_count && ds <= GRAZING_PIECE && p.guards[k] >= 0 && q.guards[k] >= 0;
       quiet = quiet && (grazes || p.guards[k] + q.guards[k] > rates[k] * ds);
     }
+    quiet = gaps_stay_open(b, &p, &q, turn_rate, &closed) && quiet;
+    bad = closed ? LOST_GAP : bad;
     if (b->single && p.s == 0 && p.guards[1] < 0) { /* it moves back at once */
       *lost = 1;
       return 0;
@@ -208,8 +222,8 @@ static void single_branch(core *c, const hand *from, const hand *to, sliding_bra
   }
 }
 
-/* Gaps that depend on the place too: those to surfaces that the sliding one is not parallel to. */
-static void single_gaps(core *c, sliding_branch *b)
+/* Gaps that depend on the place too: those to surfaces that the sliding one is not parallel to. False: too many. */
+static bool single_gaps(core *c, sliding_branch *b)
 {
   path at_rest = b->paths[0];
   at_rest.origin = c->contacts[0].place;
@@ -220,11 +234,13 @@ static void single_gaps(core *c, sliding_branch *b)
     if (v_dot(c->body.surfaces[k.surface].n, at_rest.t) == 0)
       continue;
     wave gap = path_gap(c, &at_rest, k.vertex, k.surface);
-    if (gap.k + gap.c > reach + c->noise || b->gap_count == STIC_VERTICES_MAX)
+    if (gap.k + gap.c > reach + c->noise)
       continue;
-    b->gaps[b->gap_count] = (pair){k.vertex, k.surface};
-    b->gap_waves[b->gap_count++] = gap;
+    if (b->gap_count == SLIDING_GAPS_MAX)
+      return false;
+    c->gaps[b->gap_count++] = (sliding_gap){gap, v_dot(c->body.surfaces[k.surface].n, at_rest.t)};
   }
+  return true;
 }
 
 /* ---- two vertices on two surfaces ---- */
@@ -268,7 +284,8 @@ static slide_end slide_on_turning(core *c, const hand *from, const hand *to, rea
   /* Touches that depend on the angle alone, and a reversal of one contact of a trammel. */
   touch t = {R_HUGE, 0, 0};
   if (b.single) {
-    single_gaps(c, &b);
+    if (!single_gaps(c, &b))
+      return SLIDE_ON_UNSURE;
     path fixed = b.paths[0];
     near_update(c, x * 2 * c->body.radius);
     for (near_pair k = {0}; next_near(c, &k);) {

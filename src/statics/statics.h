@@ -16,7 +16,8 @@ enum {
   PAIRS_MAX = 2 * STIC_CONTACTS_MAX, /* opened pairs that have not left yet */
   STAGES_MAX = 64,                   /* of one RELAX */
   SAMPLE_EVENTS_MAX = 10000,         /* RELAX calls on one hand path at level event */
-  CONES_MAX = 2 * CONTACTS_MAX
+  CONES_MAX = 2 * CONTACTS_MAX,
+  SLIDING_GAPS_MAX = 1024
 };
 
 /* Where judgements draw the line, in the scaled units (model: 1e-12 k_p size, 1e-14 k_p size^2). Single
@@ -51,6 +52,17 @@ typedef struct body {
   surface surfaces[STIC_SURFACES_MAX];
   real world_extent; /* largest coordinate of surface points: sets rounding noise */
 } body;
+
+/* A function of an angle: k + c cos x + s sin x */
+typedef struct wave {
+  real k, c, s;
+} wave;
+
+/* Of a vertex that slides on: gap to another surface by the angle, and how it grows with the place. */
+typedef struct sliding_gap {
+  wave turn;
+  real along;
+} sliding_gap;
 
 /* Hand [5]: position and target angle. */
 typedef struct hand {
@@ -138,6 +150,7 @@ typedef struct core {
   int event_count, event_capacity;
   double gap_scratch[STIC_SURFACES_MAX];
   uint64_t mask_scratch[STIC_SURFACES_MAX];
+  sliding_gap gaps[SLIDING_GAPS_MAX]; /* of one slide_on() */
 } core;
 
 /* ---- spring.c: hand and object joined by a virtual spring [2, 4] ---- */
@@ -151,11 +164,6 @@ static real spring_moment_about(const core *c, vec point);
 static real gap_of(const core *c, vec point, int s); /* signed distance from surface s, > 0 free */
 
 /* ---- curve.c: functions of one angle, their first crossing and first zero ---- */
-
-/* k + c cos x + s sin x */
-typedef struct wave {
-  real k, c, s;
-} wave;
 
 /* k0 + k1 x + first harmonic + second harmonic */
 typedef struct curve {
