@@ -605,12 +605,14 @@ void stic_needs_find(const stic_scene *scene, const stic_hand_range *range, stic
   begin(&a, scene, range, needs);
   if (range->known)
     find_far(&a);
-  for (int s = 0; s < scene->surface_count; s++)
-    needs->reachable += needs->surfaces[s].reach == STIC_REACH_POSSIBLE;
+  for (int s = 0; s < scene->surface_count; s++) {
+    const stic_reach reach = needs->surfaces[s].reach;
+
+    needs->behind += reach == STIC_REACH_BEHIND;
+    needs->reachable += reach == STIC_REACH_POSSIBLE;
+  }
   find_contact_sets(&a);
   find_friction(scene, needs);
   needs->free_rotation = scene->rotational_stiffness == 0;
   needs->fixed_angle = needs->free_rotation && needs->reachable == 0;
-  needs->gaps = needs->reachable * scene->vertex_count;
-  needs->broad_phase = needs->gaps > STIC_NEEDS_DIRECT_GAPS;
 }

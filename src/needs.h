@@ -53,13 +53,13 @@ typedef struct stic_pair_needs {
   bool wedging;    /* their cones can face each other: forces of any size without a pull */
 } stic_pair_needs;
 
-#define STIC_NEEDS_PAIRS_MAX 64   /* listed; further ones are counted */
-#define STIC_NEEDS_DIRECT_GAPS 16 /* vertices times surfaces up to which a broad phase has nothing to save */
+#define STIC_NEEDS_PAIRS_MAX 64 /* listed; further ones are counted */
 
 typedef struct stic_needs {
   double size;   /* m, of the object */
   double radius; /* m, farthest that a vertex can be from the holding point */
   stic_surface_needs surfaces[STIC_SURFACES_MAX];
+  int behind;    /* how many surfaces are STIC_REACH_BEHIND */
   int reachable; /* how many surfaces can be touched; what follows is about these */
   int pair_count;
   stic_pair_needs pairs[STIC_NEEDS_PAIRS_MAX];
@@ -69,8 +69,6 @@ typedef struct stic_needs {
   bool jumpless;      /* mu_static = mu_dynamic on all */
   bool free_rotation; /* k_theta = 0 */
   bool fixed_angle;   /* it never turns: nothing can be touched and k_theta = 0 */
-  int gaps;           /* vertices times reachable surfaces */
-  bool broad_phase;   /* worth asking which of them are near */
 } stic_needs;
 
 /* hidden[s]: surface s can never be touched, wherever the hand goes (STIC_REACH_BEHIND). For

@@ -1,5 +1,10 @@
 /* Inside of the simulation: which parts of the model it leaves out because its scene cannot need them. Results are
- * the same to the last bit; tests prove it and `stiction bench speed` shows what each part costs. */
+ * the same to the last bit (`iterations` counts what was done); tests prove it and `stiction bench speed` shows what
+ * each part costs.
+ *
+ * Not left out, as it saves nothing that can be measured: surfaces out of the hand's reach (the list of near pairs
+ * does that already), wedging where no cones face each other (asked once per contact set), jumps where mu_s = mu_d,
+ * friction where there is none, the rotational spring where k_theta = 0 (a multiplication each). */
 #ifndef STIC_SIM_H
 #define STIC_SIM_H
 

@@ -231,15 +231,16 @@ static void say_rotation(const explanation *e)
            e->scene.rotational_stiffness);
 }
 
-static void say_broad_phase(const explanation *e)
+/* What a simulation of this scene does without; the rest of what is impossible costs nothing (sim.h). */
+static void say_left_out(const explanation *e)
 {
-  const stic_needs *n = &e->needs;
-
-  printf("Broad phase: %s: %d vertices x %d surfaces are %d gaps%s.\n",
-         n->broad_phase ? "needed" : "not needed", e->scene.vertex_count, n->reachable, n->gaps,
-         n->broad_phase ? ", more than are worth looking at each time"
-         : n->gaps      ? ", no more work than asking which are near"
-                        : "");
+  printf("Left out when solving: ");
+  if (e->needs.behind > 0)
+    printf("%d surface%s behind others (not with f32), and ", e->needs.behind,
+           e->needs.behind == 1 ? "" : "s");
+  printf("a broad phase: %d vertices x %d surfaces are %d gaps, quicker computed than sorted out.\n",
+         e->scene.vertex_count, e->scene.surface_count - e->needs.behind,
+         e->scene.vertex_count * (e->scene.surface_count - e->needs.behind));
 }
 
 static void say_all(const explanation *e)
@@ -255,7 +256,7 @@ static void say_all(const explanation *e)
   say_contacts(e);
   say_friction(e);
   say_rotation(e);
-  say_broad_phase(e);
+  say_left_out(e);
 }
 
 /* ---- JSON -------------------------------------------------------------------------------- */
@@ -317,7 +318,7 @@ static int print_json(const explanation *e)
   static const char *const frictions[] = {"jumps", "no-jumps", "none"};
   const stic_needs *n = &e->needs;
   const char *hand = !e->range.known ? "anywhere" : e->range.samples > 0 ? "trace" : "workspace";
-  json_t *root = json_pack("{s:s, s:i, s:i, s:o, s:o, s:i, s:o, s:b, s:s, s:s, s:i, s:b}", "hand", hand,
+  json_t *root = json_pack("{s:s, s:i, s:i, s:o, s:o, s:i, s:o, s:b, s:s, s:s, s:i}", "hand", hand,
                            "vertices", e->scene.vertex_count, "reachable", n->reachable, "surfaces",
                            surfaces_json(e), "contact_sets", contacts_json(n), "pair_count", n->pair_count,
                            "pairs", pairs_json(n), "wedging", n->wedging, "friction",
@@ -328,7 +329,7 @@ static int print_json(const explanation *e)
                            n->fixed_angle     ? "fixed"
                            : n->free_rotation ? "free"
                                               : "spring",
-                           "gaps", n->gaps, "broad_phase", n->broad_phase);
+                           "left_out", n->behind);
   const int failed = !root || json_dumpf(root, stdout, JSON_INDENT(2)) != 0;
 
   json_decref(root);

@@ -71,7 +71,7 @@ static void remove_contact(core *c, int index)
   record(c, STIC_EVENT_OPEN, k.vertex, k.surface, k.place, 0);
 }
 
-/* Asks ODE again when the object can leave the region for which the last answer holds. */
+/* Asks the detector again when the object can leave the region for which the last answer holds. */
 static void near_update(core *c, real travel)
 {
   near_list *near = &c->near;

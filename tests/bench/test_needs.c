@@ -234,7 +234,7 @@ static void known_cases(void **state)
   assert_int_equal(n.surfaces[3].reach, STIC_REACH_FAR);
   assert_true(n.surfaces[3].at_rest && !n.surfaces[2].at_rest);
   assert_int_equal(n.reachable, 1);
-  assert_true(!n.multi && n.edge && !n.broad_phase && !n.jumpless);
+  assert_true(!n.multi && n.edge && n.behind == 1 && !n.jumpless);
   box(&s, 0);
   random_surface(&s, 0.1, 0.0, 180, 0, 0);
   s.surfaces[0].friction = (stic_friction){0, 0};
