@@ -186,7 +186,7 @@ static stic_status start_movie(replay *r, const replay_options *o, const stic_se
 
 int stic_cmd_replay(int argc, const char **argv)
 {
-  stic_session_options session = {NULL, NULL, NULL, NULL, NULL, NULL};
+  stic_session_options session = {NULL, NULL, NULL, NULL, NULL, NULL, 0};
   replay_options o = {.fps = STIC_TARGET_HZ};
   const struct poptOption table[] = {
     STIC_SESSION_OPTIONS(&session),

@@ -4,11 +4,13 @@
 #include "../error.h"
 #include "../io/trace_csv.h"
 #include "../live/live.h"
+#include "auto_level.h"
 #include "cli.h"
 #include "run_pictures.h"
 #include "session.h"
 #include "viewer.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -303,19 +305,24 @@ static stic_status open_view(run *r, const run_options *o, stic_error *err)
 
 static stic_status open_all(run *r, const run_options *o, const char *scene, stic_error *err)
 {
-  char described[300];
-  stic_status status = open_device(r, o, scene, err);
+  char described[300], comment[480];
+  stic_status status = stic_session_load(&r->session, &o->session, scene, err);
 
+  if (status == STIC_OK) /* after "auto" is settled: no sample has to wait for that */
+    status = open_device(r, o, scene, err);
   if (status != STIC_OK)
     return status;
   stic_supervisor_describe(r->device, described, sizeof described);
-  status = stic_session_open(&r->session, &o->session, scene, "device", described, err);
+  status = stic_session_begin(&r->session, "device", described, err);
   if (status == STIC_OK)
     status = stic_session_time(&r->session, err);
   if (status == STIC_OK && o->view)
     status = open_view(r, o, err);
-  if (status == STIC_OK && o->record)
-    status = stic_trace_create(o->record, described, &r->recording, err);
+  if (status == STIC_OK && o->record) {
+    snprintf(comment, sizeof comment, "accuracy %s, precision %s, device %s", r->session.accuracy_text,
+             stic_precision_name(r->session.settings.precision), described);
+    status = stic_trace_create(o->record, comment, &r->recording, err);
+  }
   return status;
 }
 
@@ -352,6 +359,7 @@ static void free_options(run_options *o)
 int stic_cmd_run(int argc, const char **argv)
 {
   run_options o;
+  long long budget_ns = STIC_AUTO_BUDGET_NS;
   const struct poptOption table[] = {
     {"device", 'd', POPT_ARG_STRING, &o.device, 0,
      "The tracker, e.g. trace:file=hand.csv,speed=2,loop or trace:file=- (standard input)",
@@ -360,6 +368,10 @@ int stic_cmd_run(int argc, const char **argv)
      "Where the tracker stands and which button does what, instead of the scene's section tracker", "FILE"},
     {"record", '\0', POPT_ARG_STRING, &o.record, 0, "Record the samples as a trace", "FILE"},
     {"view", '\0', POPT_ARG_NONE, &o.view, 0, "Show it live in a window (key h: help)", NULL},
+    {"budget-ns", '\0', POPT_ARG_LONGLONG, &budget_ns, 0,
+     "For --accuracy auto, which takes the most accurate level and precision whose p99.9 on this scene is within "
+     "so many ns of computing a sample (default a tenth of 1/31 s)",
+     "NS"},
     STIC_SESSION_OPTIONS(&o.session),
     STIC_RUN_PICTURE_OPTIONS(&o.pictures),
     POPT_TABLEEND};
@@ -373,6 +385,11 @@ int stic_cmd_run(int argc, const char **argv)
     stic_cli_say("run: no device; expected --device NAME[:key=value,...]");
     code = STIC_USAGE;
   }
+  if (code < 0 && budget_ns < 1) {
+    stic_cli_say("run: --budget-ns %lld: expected at least 1", budget_ns);
+    code = STIC_USAGE;
+  }
+  o.session.budget_ns = budget_ns;
   if (code < 0)
     code = run_device(&o, args.positions[0]);
   stic_cli_args_free(&args);

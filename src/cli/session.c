@@ -1,10 +1,13 @@
 #include "session.h"
 
+#include "auto_level.h"
+
 #include "../error.h"
 #include "../io/events_csv.h"
 #include "../io/log_csv.h"
 
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,18 +22,52 @@ void stic_session_options_free(stic_session_options *options)
   memset(options, 0, sizeof *options);
 }
 
+static bool is_auto(const stic_session_options *o)
+{
+  return o->accuracy && strcmp(o->accuracy, "auto") == 0;
+}
+
 static stic_status read_settings(stic_session *s, const stic_session_options *o, stic_error *err)
 {
   stic_status status = STIC_OK;
 
   stic_settings_init(&s->settings);
-  if (o->accuracy)
+  if (is_auto(o) && o->precision)
+    return stic_error_set(err, STIC_USAGE, NULL, 0,
+                          "accuracy auto chooses the precision as well; --precision does not go with it");
+  if (is_auto(o) && o->budget_ns == 0)
+    return stic_error_set(err, STIC_USAGE, NULL, 0,
+                          "accuracy 'auto' is for run only; expected frame, substep=N or event");
+  if (o->accuracy && !is_auto(o))
     status = stic_settings_set_accuracy(&s->settings, o->accuracy, err);
   if (status == STIC_OK && o->precision)
     status = stic_settings_set_precision(&s->settings, o->precision, err);
   if (status == STIC_OK)
     status = stic_cli_overrides(o->set, &s->overrides, &s->override_count, err);
   return status;
+}
+
+/* Decides what "auto" means here, once, and says so. */
+static stic_status settle_accuracy(stic_session *s, const stic_session_options *o, stic_error *err)
+{
+  stic_auto_choice choice;
+  char text[1024];
+  size_t n;
+
+  if (is_auto(o)) {
+    const stic_status status = stic_auto_level(&s->scene, o->budget_ns, &s->settings, &choice, err);
+
+    if (status != STIC_OK)
+      return status;
+    stic_auto_text(&choice, o->budget_ns, text, sizeof text);
+    stic_cli_say("%s%s", choice.fits ? "" : "warning: ", text);
+  }
+  stic_settings_accuracy_text(&s->settings, s->accuracy_text, sizeof s->accuracy_text);
+  n = strlen(s->accuracy_text);
+  if (is_auto(o))
+    snprintf(s->accuracy_text + n, sizeof s->accuracy_text - n, " (auto, budget %lld ns)",
+             (long long)o->budget_ns);
+  return STIC_OK;
 }
 
 /* Refuses what cannot be written before the first sample is solved, not after an hour. */
@@ -54,33 +91,53 @@ static stic_status open_outputs(stic_session *s, const stic_session_options *o, 
   return status;
 }
 
-stic_status stic_session_open(stic_session *s, const stic_session_options *o, const char *scene_path,
-                              const char *input_kind, const char *input, stic_error *err)
+stic_status stic_session_load(stic_session *s, const stic_session_options *o, const char *scene_path,
+                              stic_error *err)
 {
   stic_status status;
 
   memset(s, 0, sizeof *s);
-  s->started_ns = stic_clock_ns();
+  s->options = o;
+  s->scene_path = scene_path;
   status = read_settings(s, o, err);
   if (status == STIC_OK)
     status = stic_scene_read(scene_path, s->overrides, s->override_count, &s->scene, err);
   if (status == STIC_OK)
-    status = stic_sim_create(&s->scene, &s->settings, &s->sim, err);
+    status = settle_accuracy(s, o, err);
+  if (status != STIC_OK)
+    stic_session_close(s);
+  return status;
+}
+
+stic_status stic_session_begin(stic_session *s, const char *input_kind, const char *input, stic_error *err)
+{
+  stic_status status;
+
+  s->started_ns = stic_clock_ns();
+  status = stic_sim_create(&s->scene, &s->settings, &s->sim, err);
   if (status == STIC_OK)
-    status = open_outputs(s, o, err);
+    status = open_outputs(s, s->options, err);
   if (status != STIC_OK) {
     stic_session_close(s);
     return status;
   }
   if (s->log) {
-    const stic_log_provenance provenance = {scene_path,   input_kind,   input,
-                                            &s->settings, s->overrides, s->override_count};
+    const stic_log_provenance provenance = {
+      s->scene_path, input_kind, input, s->accuracy_text, &s->settings, s->overrides, s->override_count};
 
     stic_log_begin(s->log, &provenance);
   }
   if (s->events)
     stic_events_begin(s->events);
   return STIC_OK;
+}
+
+stic_status stic_session_open(stic_session *s, const stic_session_options *o, const char *scene_path,
+                              const char *input_kind, const char *input, stic_error *err)
+{
+  const stic_status status = stic_session_load(s, o, scene_path, err);
+
+  return status == STIC_OK ? stic_session_begin(s, input_kind, input, err) : status;
 }
 
 stic_status stic_session_time(stic_session *s, stic_error *err)

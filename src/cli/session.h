@@ -12,6 +12,7 @@ typedef struct stic_session_options {
   char *accuracy, *precision;
   char *log, *events, *timing; /* paths of outputs */
   char **set;
+  int64_t budget_ns; /* for accuracy auto; 0 (default): this command does not have it */
 } stic_session_options;
 
 void stic_session_options_free(stic_session_options *options);
@@ -41,8 +42,11 @@ void stic_session_options_free(stic_session_options *options);
   }
 
 typedef struct stic_session {
+  const stic_session_options *options; /* as given */
+  const char *scene_path;
   stic_scene scene;
   stic_settings settings;
+  char accuracy_text[96]; /* "event (auto, budget 3225806 ns)" */
   stic_override *overrides;
   int override_count;
   stic_sim *sim;
@@ -54,8 +58,15 @@ typedef struct stic_session {
   int64_t rows;
 } stic_session;
 
-/* Reads the scene, makes the simulation and opens the outputs. `input_kind` and `input` are the log's
- * provenance ("trace", path). `options` must outlive the session. On failure nothing stays open. */
+/* Reads options and scene and settles the accuracy, which takes up to 2 s for "auto". Both strings and options must
+ * outlive the session. On failure nothing stays open. */
+stic_status stic_session_load(stic_session *session, const stic_session_options *options,
+                              const char *scene_path, stic_error *err);
+/* Then makes the simulation and opens the outputs. `input_kind` and `input` are the log's provenance ("trace",
+ * path). On failure nothing stays open. */
+stic_status stic_session_begin(stic_session *session, const char *input_kind, const char *input,
+                               stic_error *err);
+/* Both at once. */
 stic_status stic_session_open(stic_session *session, const stic_session_options *options,
                               const char *scene_path, const char *input_kind, const char *input,
                               stic_error *err);

@@ -17,6 +17,10 @@ stic_status stic_motion_read(stic_motion *motion, const char *scene, const char 
                              const stic_override *overrides, int override_count, stic_error *err);
 /* A box that is dragged through the corner of floor and wall. */
 stic_status stic_motion_built_in(stic_motion *motion, stic_error *err);
+/* A hand that presses the scene's object against one surface after the other, and into the corners of neighbours:
+ * three times to and fro along each, turning, with a hand's tremor. 31 samples a second. */
+stic_status stic_motion_along_surfaces(stic_motion *motion, const stic_scene *scene, int count,
+                                       stic_error *err);
 /* The same motion at 1000 samples a second, its first minute: a smooth curve through all samples. */
 stic_status stic_motion_resample(const stic_motion *from, stic_motion *to, stic_error *err);
 void stic_motion_free(stic_motion *motion);

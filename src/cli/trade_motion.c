@@ -1,8 +1,9 @@
-/* Motions for `stiction bench trade`: read, made or resampled; solved; compared. */
+/* Motions for `stiction bench trade` and `run --accuracy auto`: read, made or resampled; solved; compared. */
 #include "../error.h"
 #include "../io/log_csv.h"
 #include "../io/timing.h"
 #include "../io/trace_csv.h"
+#include "../needs.h"
 #include "cli.h"
 #include "trade.h"
 
@@ -102,6 +103,107 @@ stic_status stic_motion_built_in(stic_motion *motion, stic_error *err)
   }
   return STIC_OK;
 }
+
+/* ---- along the surfaces of any scene ------------------------------------------------------ */
+
+#define LEGS_MAX 16
+
+/* A stretch of the way: home, pressed against one surface or two, along the first, and home again. */
+typedef struct leg {
+  double away[2], along[2]; /* m, from home */
+} leg;
+
+/* Where the hand starts: at the holding point, or in the object's middle. */
+static void find_home(const stic_scene *scene, double home[2])
+{
+  const double c = cos(scene->angle), s = sin(scene->angle);
+  double b[2] = {scene->holding_point[0], scene->holding_point[1]};
+
+  if (scene->hold == STIC_HOLD_BUTTON) {
+    b[0] = b[1] = 0;
+    for (int v = 0; v < scene->vertex_count; v++)
+      for (int k = 0; k < 2; k++)
+        b[k] += scene->vertices[v][k] / scene->vertex_count;
+  }
+  home[0] = scene->x + c * b[0] - s * b[1];
+  home[1] = scene->y + s * b[0] + c * b[1];
+}
+
+/* One per surface and one per corner; surfaces behind others are never touched. */
+static int find_legs(const stic_scene *scene, const double home[2], leg *legs)
+{
+  const double size = stic_scene_size(scene), depth = 0.1 * size;
+  bool hidden[STIC_SURFACES_MAX];
+  int count = 0, last = -1;
+
+  stic_needs_find_hidden(scene, hidden);
+  for (int s = 0; s < scene->surface_count && count + 2 <= LEGS_MAX; s++) {
+    const stic_surface *surface = &scene->surfaces[s];
+    double n[2], gap;
+    leg *l = &legs[count];
+
+    if (hidden[s])
+      continue;
+    stic_normal_from_degrees(surface->normal_deg, n);
+    gap = (home[0] - surface->point[0]) * n[0] + (home[1] - surface->point[1]) * n[1];
+    *l = (leg){{-(gap + depth) * n[0], -(gap + depth) * n[1]}, {size * n[1], -size * n[0]}};
+    count++;
+    if (last >= 0) { /* both at once */
+      legs[count] = *l;
+      for (int k = 0; k < 2; k++)
+        legs[count].away[k] += legs[last].away[k];
+      count++;
+    }
+    last = (int)(l - legs);
+  }
+  return count;
+}
+
+/* Position and turn at part 0..1 of a leg. */
+static void leg_at(const leg *l, double part, double place[2], double *turn)
+{
+  const double in = fmin(1, fmin(part, 1 - part) / 0.15), u = fmax(0, fmin(1, (part - 0.15) / 0.7));
+  const double press = in * in * (3 - 2 * in) * (1 + 0.2 * sin(10 * PI * u)), slide = sin(6 * PI * u);
+
+  for (int k = 0; k < 2; k++)
+    place[k] = press * l->away[k] + slide * l->along[k];
+  *turn = 0.5 * sin(4 * PI * u);
+}
+
+stic_status stic_motion_along_surfaces(stic_motion *motion, const stic_scene *scene, int count,
+                                       stic_error *err)
+{
+  const double tremor = 0.002 * stic_scene_size(scene);
+  leg legs[LEGS_MAX];
+  double home[2];
+  int leg_count;
+
+  memset(motion, 0, sizeof *motion);
+  motion->scene = *scene;
+  motion->samples = calloc((size_t)count, sizeof *motion->samples);
+  if (!motion->samples)
+    return no_memory(err);
+  motion->count = count;
+  find_home(scene, home);
+  leg_count = find_legs(scene, home, legs);
+  for (int i = 0; i < count; i++) {
+    const double t = i / 31.0, at = (double)i / count * leg_count;
+    const int k = (int)at;
+    stic_sample *s = &motion->samples[i];
+    double place[2], turn;
+
+    leg_at(&legs[k], at - k, place, &turn);
+    s->t_ns = (int64_t)i * STIC_FRAME_NS;
+    s->position[0] = home[0] + place[0] + tremor * sin(2 * PI * 9.3 * t);
+    s->position[1] = home[1] + place[1] + tremor * sin(2 * PI * 10.7 * t);
+    s->orientation[2] = sin((scene->angle + turn) / 2);
+    s->orientation[3] = cos((scene->angle + turn) / 2);
+    s->buttons = STIC_BUTTON_GRIP;
+  }
+  return STIC_OK;
+}
+
+/* ---- resampled --------------------------------------------------------------------------- */
 
 static double hand_angle(const stic_sample *sample, double last)
 {

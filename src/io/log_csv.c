@@ -35,7 +35,7 @@ void stic_log_begin(stic_outfile *out, const stic_log_provenance *p)
   provenance_line(out, "scene", p->scene);
   provenance_line(out, p->input_kind, p->input);
   provenance_line(out, "version", stic_version());
-  provenance_line(out, "accuracy", accuracy);
+  provenance_line(out, "accuracy", p->accuracy ? p->accuracy : accuracy);
   provenance_line(out, "precision", stic_precision_name(p->settings->precision));
   for (int i = 0; i < p->override_count; i++) {
     snprintf(set, sizeof set, "%s=%s", p->overrides[i].key, p->overrides[i].value);

@@ -20,6 +20,7 @@ typedef struct stic_log_provenance {
   const char *scene;      /* path of the scene file */
   const char *input_kind; /* "trace" or "device" */
   const char *input;      /* its path or description */
+  const char *accuracy;   /* NULL: as in settings */
   const stic_settings *settings;
   const stic_override *overrides; /* may be NULL if override_count is 0 */
   int override_count;
