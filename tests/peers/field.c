@@ -1,0 +1,171 @@
+#include "field.h"
+
+#include "cli/cli.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Three settings: one coefficient; two of them, switched by the speed of slip; the same as cheap as it gets. */
+enum { PLAIN, SWITCHED, CHEAP, KINDS };
+static const char *const kind_names[KINDS] = {"", ", switched mu", ", switched, cheap"};
+
+/* steps, iterations, mass, scale, firmness, damping, hand_damping, switch_speed; found by --tune. */
+static const struct {
+  const peer_engine *const *engine;
+  const char *name, *package;
+  bool direct, scaled; /* has a direct solver; has tolerances of a fixed length */
+  double firmness[3];  /* to choose from */
+  peer_tuning tuning[KINDS];
+} entries[PEER_ENGINES] = {
+  {&peer_ode, "ODE", "libode-dev", true, false, {0.2, 0.5, 0.8},
+   {{32, 0, 0.1, 1, 0.2, 1, 0, 0}, {32, 0, 0.1, 1, 0.2, 1, 0, 1e-3}, {2, 0, 0.5, 1, 0.2, 0.5, 0, 1e-3}}},
+  {&peer_chipmunk, "Chipmunk", "chipmunk-dev", false, false, {0.1, 0.5, 0.9},
+   {{32, 30, 0.1, 1, 0.1, 1, 0, 0}, {32, 30, 0.1, 1, 0.1, 1, 0, 1e-3}, {2, 10, 0.5, 1, 0.1, 0.5, 0, 1e-3}}},
+  {&peer_bullet, "Bullet", "libbullet-dev", false, true, {0.1, 0.2, 0.8},
+   {{32, 30, 0.1, 10, 0.2, 1, 0, 0}, {32, 30, 0.1, 10, 0.2, 1, 0, 1e-3}, {2, 10, 0.5, 10, 0.2, 0.5, 0, 1e-3}}},
+  {&peer_box2d, "Box2D", "libbox2d-dev", false, true, {0.2, 0.2, 0.2},
+   {{32, 30, 0.1, 100, 0.2, 1, 0, 0}, {32, 30, 0.1, 100, 0.2, 1, 0, 1e-3}, {2, 10, 0.5, 100, 0.2, 0.5, 0, 1e-3}}},
+  {&peer_mujoco, "MuJoCo", "mujoco-core", true, false, {0.95, 0.99, 0.999},
+   {{32, 10, 0.1, 1, 0.99, 1, 0, 0}, {32, 10, 0.1, 1, 0.99, 1, 0, 1e-3}, {2, 10, 0.5, 1, 0.99, 0.5, 0, 1e-3}}},
+};
+
+int peer_field(peer_contestant out[PEER_CONTESTANTS])
+{
+  static const stic_level levels[2] = {STIC_LEVEL_EVENT, STIC_LEVEL_FRAME};
+  int count = 0;
+
+  for (int i = 0; i < 2; i++, count++) {
+    out[count] = (peer_contestant){.name = "stiction", .engine = NULL};
+    snprintf(out[count].name, sizeof out[count].name, "stiction %s", i == 0 ? "event" : "frame");
+    stic_settings_init(&out[count].settings);
+    out[count].settings.level = levels[i];
+  }
+  for (int i = 0; i < PEER_ENGINES; i++) {
+    for (int k = 0; *entries[i].engine && k < KINDS; k++, count++) {
+      out[count] = (peer_contestant){.engine = *entries[i].engine, .tuning = entries[i].tuning[k]};
+      snprintf(out[count].name, sizeof out[count].name, "%s%s", entries[i].name, kind_names[k]);
+    }
+  }
+  return count;
+}
+
+void peer_field_missing(void)
+{
+  for (int i = 0; i < PEER_ENGINES; i++) {
+    if (!*entries[i].engine)
+      printf("%s is left out: %s was not there when this was built\n", entries[i].name, entries[i].package);
+  }
+}
+
+/* ---- search ------------------------------------------------------------------------------ */
+
+#define CHEAP_STEPS 2
+#define CHEAP_ITERATIONS 10
+#define FLOOR 1e-6 /* m: errors below count alike */
+
+/* The mean over all scenes of the logarithm of the object's error: good everywhere, not in one place. */
+static stic_status judge(const peer_contestant *who, const peer_scene *scenes, double *worth, stic_error *err)
+{
+  stic_status status = STIC_OK;
+
+  *worth = 0;
+  for (int i = 0; i < PEER_SCENES && status == STIC_OK; i++) {
+    stic_outcome o = {0};
+    peer_score score;
+    double onset = NAN;
+
+    status = peer_contest_run(who, &scenes[i], &o, &onset, err);
+    if (status == STIC_OK) {
+      peer_contest_score(&scenes[i], &o, onset, &score);
+      *worth += log10(fmax(FLOOR, isfinite(score.difference.position_rms) ? score.difference.position_rms : 1)) / PEER_SCENES;
+    }
+    stic_outcome_free(&o);
+  }
+  return status;
+}
+
+typedef struct choice {
+  size_t field; /* of peer_tuning, an int or a double */
+  bool whole;
+  int count;
+  double values[8];
+} choice;
+
+static void set(peer_tuning *t, const choice *c, int k)
+{
+  if (c->whole)
+    *(int *)((char *)t + c->field) = (int)c->values[k];
+  else
+    *(double *)((char *)t + c->field) = c->values[k];
+}
+
+static int choices_of(int entry, int kind, choice out[8])
+{
+  const double *f = entries[entry].firmness;
+  const bool cheap = kind == CHEAP;
+  int count = 0;
+
+  out[count++] = (choice){offsetof(peer_tuning, steps), true, cheap ? 2 : 7, {1, CHEAP_STEPS, 4, 8, 16, 32, 64}};
+  out[count++] = (choice){offsetof(peer_tuning, iterations), true, cheap ? 2 : 4,
+                          {entries[entry].direct ? 0 : 4, CHEAP_ITERATIONS, 50, 200}};
+  out[count++] = (choice){offsetof(peer_tuning, mass), false, 4, {0.05, 0.1, 0.2, 0.5}};
+  out[count++] = (choice){offsetof(peer_tuning, firmness), false, 3, {f[0], f[1], f[2]}};
+  out[count++] = (choice){offsetof(peer_tuning, damping), false, 3, {0.3, 0.6, 1}};
+  out[count++] = (choice){offsetof(peer_tuning, hand_damping), false, 2, {0, 1}};
+  if (kind != PLAIN)
+    out[count++] = (choice){offsetof(peer_tuning, switch_speed), false, 5, {1e-5, 1e-4, 1e-3, 3e-3, 1e-2}};
+  if (entries[entry].scaled)
+    out[count++] = (choice){offsetof(peer_tuning, scale), false, 3, {1, 10, 100}};
+  return count;
+}
+
+/* One value after the other is tried in all its choices until none makes it better. */
+static stic_status descend(peer_contestant *who, int entry, int kind, const peer_scene *scenes, double *best, stic_error *err)
+{
+  choice choices[8];
+  const int count = choices_of(entry, kind, choices);
+  stic_status status = judge(who, scenes, best, err);
+  bool better = true;
+
+  while (better && status == STIC_OK) {
+    better = false;
+    for (int i = 0; i < count; i++) {
+      for (int k = 0; k < choices[i].count && status == STIC_OK; k++) {
+        peer_contestant trial = *who;
+        double worth;
+
+        set(&trial.tuning, &choices[i], k);
+        status = judge(&trial, scenes, &worth, err);
+        if (status == STIC_OK && worth < *best - 1e-3) {
+          *best = worth;
+          *who = trial;
+          better = true;
+        }
+      }
+    }
+  }
+  return status;
+}
+
+stic_status peer_field_tune(const char *only, const peer_scene scenes[PEER_SCENES], stic_error *err)
+{
+  stic_status status = STIC_OK;
+
+  for (int i = 0; i < PEER_ENGINES * KINDS && status == STIC_OK && stic_cli_signal() == 0; i++) {
+    const int entry = i / KINDS, kind = i % KINDS;
+    peer_contestant who = {.engine = *entries[entry].engine, .tuning = entries[entry].tuning[kind]};
+    const peer_tuning *t = &who.tuning;
+    double best;
+
+    if (!who.engine || strncmp(entries[entry].name, only, strlen(only)) != 0)
+      continue;
+    status = descend(&who, entry, kind, scenes, &best, err);
+    if (status == STIC_OK)
+      printf("%s%s: {%d, %d, %g, %g, %g, %g, %g, %g}, typical error %.3g mm\n", entries[entry].name, kind_names[kind],
+             t->steps, t->iterations, t->mass, t->scale, t->firmness, t->damping, t->hand_damping, t->switch_speed,
+             pow(10, best) * 1e3);
+    fflush(stdout);
+  }
+  return status;
+}
