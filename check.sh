@@ -2,11 +2,10 @@
 # Installs what is missing, builds with both compilers and with sanitizers, and runs all tests.
 #   ./check.sh            everything
 #   ./check.sh --quick    one build, without the slow labels
+#   ./check.sh --peers    no tests, but a table of stiction beside dynamics engines (tests/peers/README.md)
 set -euo pipefail
 cd "$(dirname "$0")"
 . .ci/packages.sh
-
-need build run video devices view test
 
 configure_and_build() { # preset
   cmake --preset "$1" >"build-$1.log" 2>&1 || { cat "build-$1.log"; return 1; }
@@ -14,6 +13,19 @@ configure_and_build() { # preset
   grep '^-- stiction ' "build-$1.log"
   cmake --build --preset "$1" >>"build-$1.log" 2>&1 || { tail -n 60 "build-$1.log"; return 1; }
 }
+
+if [ "${1:-}" = --peers ]; then
+  need build ninja
+  offer peers
+  [ -x build-peers/venv/bin/pip ] || python3 -m venv build-peers/venv || true
+  # shellcheck disable=SC2046 # a list of names
+  build-peers/venv/bin/pip install -q --no-deps --only-binary :all: $(sed -n 's/^peers-pypi: //p' packages) ||
+    echo "no MuJoCo from PyPI: it is left out"
+  configure_and_build peers
+  exec build-peers/stiction_peers --csv build-peers/peers.csv
+fi
+
+need build run video devices view test
 
 if [ "${1:-}" = --quick ]; then
   configure_and_build ci

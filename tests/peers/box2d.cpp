@@ -89,7 +89,8 @@ void read_motion(void *it, peer_motion *m)
   const world *w = static_cast<world *>(it);
   const b2Vec2 p = w->body->GetPosition(), v = w->body->GetLinearVelocity();
 
-  *m = {p.x / w->scale, p.y / w->scale, w->body->GetAngle(), v.x / w->scale, v.y / w->scale, w->body->GetAngularVelocity()};
+  *m = {p.x / w->scale, p.y / w->scale, w->body->GetAngle(),
+        v.x / w->scale, v.y / w->scale, w->body->GetAngularVelocity()};
 }
 
 void destroy(void *it)
@@ -97,7 +98,8 @@ void destroy(void *it)
   delete static_cast<world *>(it);
 }
 
-const peer_engine engine = {"Box2D", "libbox2d-dev", "one coefficient; float", create, step, read_motion, destroy};
+const peer_engine engine = {"Box2D",     "libbox2d-dev", "one coefficient; float", create, step,
+                            read_motion, destroy};
 
 } // namespace
 

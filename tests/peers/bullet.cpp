@@ -36,7 +36,8 @@ void tune(world *w, const peer_tuning *tuning)
   info.m_warmstartingFactor = 1;
   info.m_leastSquaresResidualThreshold = 0;
   info.m_solverMode = SOLVER_USE_WARMSTARTING | SOLVER_USE_2_FRICTION_DIRECTIONS |
-                      SOLVER_DISABLE_VELOCITY_DEPENDENT_FRICTION_DIRECTION | SOLVER_ENABLE_FRICTION_DIRECTION_CACHING |
+                      SOLVER_DISABLE_VELOCITY_DEPENDENT_FRICTION_DIRECTION |
+                      SOLVER_ENABLE_FRICTION_DIRECTION_CACHING |
                       SOLVER_INTERLEAVE_CONTACT_AND_FRICTION_CONSTRAINTS;
 }
 
@@ -49,8 +50,9 @@ void add_surface(world *w, const stic_surface &s)
 
   stic_normal_from_degrees(s.normal_deg, n);
   surface->setCollisionShape(&w->ground);
-  surface->setWorldTransform(btTransform(btMatrix3x3(n[1], n[0], 0, -n[0], n[1], 0, 0, 0, 1),
-                                         btVector3(s.point[0] * w->scale - n[0] * deep, s.point[1] * w->scale - n[1] * deep, 0)));
+  surface->setWorldTransform(
+    btTransform(btMatrix3x3(n[1], n[0], 0, -n[0], n[1], 0, 0, 0, 1),
+                btVector3(s.point[0] * w->scale - n[0] * deep, s.point[1] * w->scale - n[1] * deep, 0)));
   surface->setFriction(s.friction.mu_static);
   surface->setCollisionFlags(surface->getCollisionFlags() | btCollisionObject::CF_STATIC_OBJECT |
                              btCollisionObject::CF_HAS_FRICTION_ANCHOR);
@@ -65,10 +67,11 @@ void *create(const stic_scene *scene, const peer_tuning *tuning, double inertia)
 
   w->scale = scale;
   tune(w, tuning);
-  w->box = std::make_unique<btBoxShape>(btVector3(corner[0] * scale, corner[1] * scale, scene->depth / 2 * scale));
+  w->box =
+    std::make_unique<btBoxShape>(btVector3(corner[0] * scale, corner[1] * scale, scene->depth / 2 * scale));
   w->body = std::make_unique<btRigidBody>(tuning->mass, nullptr, w->box.get(), btVector3(i, i, i));
-  w->body->setWorldTransform(
-    btTransform(btQuaternion(btVector3(0, 0, 1), scene->angle), btVector3(scene->x * scale, scene->y * scale, 0)));
+  w->body->setWorldTransform(btTransform(btQuaternion(btVector3(0, 0, 1), scene->angle),
+                                         btVector3(scene->x * scale, scene->y * scale, 0)));
   w->body->setFriction(1);
   w->body->setActivationState(DISABLE_DEACTIVATION);
   w->body->setLinearFactor(btVector3(1, 1, 0));
@@ -98,7 +101,8 @@ void read_motion(void *it, peer_motion *m)
   const btTransform &t = w->body->getWorldTransform();
   const btVector3 p = t.getOrigin() / w->scale, v = w->body->getLinearVelocity() / w->scale;
 
-  *m = {p.x(), p.y(), std::atan2(t.getBasis()[1][0], t.getBasis()[0][0]), v.x(), v.y(), w->body->getAngularVelocity().z()};
+  *m = {p.x(), p.y(), std::atan2(t.getBasis()[1][0], t.getBasis()[0][0]),
+        v.x(), v.y(), w->body->getAngularVelocity().z()};
 }
 
 void destroy(void *it)

@@ -33,10 +33,11 @@ static void add_surface(world *w, int i, const stic_surface *s)
 
   stic_normal_from_degrees(s->normal_deg, n);
   w->surfaces[i] = cpSpaceAddShape(
-    w->space, cpSegmentShapeNew(cpSpaceGetStaticBody(w->space),
-                                cpv(s->point[0] - n[0] * thick - n[1] * half, s->point[1] - n[1] * thick + n[0] * half),
-                                cpv(s->point[0] - n[0] * thick + n[1] * half, s->point[1] - n[1] * thick - n[0] * half),
-                                thick));
+    w->space,
+    cpSegmentShapeNew(cpSpaceGetStaticBody(w->space),
+                      cpv(s->point[0] - n[0] * thick - n[1] * half, s->point[1] - n[1] * thick + n[0] * half),
+                      cpv(s->point[0] - n[0] * thick + n[1] * half, s->point[1] - n[1] * thick - n[0] * half),
+                      thick));
   cpShapeSetFriction(w->surfaces[i], s->friction.mu_static);
   cpShapeSetCollisionType(w->surfaces[i], (cpCollisionType)i);
 }
@@ -106,5 +107,6 @@ static void destroy(void *it)
   free(w);
 }
 
-static const peer_engine engine = {"Chipmunk", "chipmunk-dev", "one coefficient", create, step, read_motion, destroy};
+static const peer_engine engine = {"Chipmunk",  "chipmunk-dev", "one coefficient", create, step,
+                                   read_motion, destroy};
 const peer_engine *const peer_chipmunk = &engine;

@@ -89,9 +89,11 @@ static void choose_friction(const run *r, double *mu)
     stic_normal_from_degrees(surface->normal_deg, n);
     for (int k = 0; r->tuning->switch_speed > 0 && k < scene->vertex_count; k++) {
       const double *v = scene->vertices[k], x = c * v[0] - s * v[1], y = s * v[0] + c * v[1];
-      const double slip = n[1] * (r->motion.vx - r->motion.turning * y) - n[0] * (r->motion.vy + r->motion.turning * x);
+      const double slip =
+        n[1] * (r->motion.vx - r->motion.turning * y) - n[0] * (r->motion.vy + r->motion.turning * x);
 
-      if (n[0] * (r->motion.x + x - surface->point[0]) + n[1] * (r->motion.y + y - surface->point[1]) < NEAR &&
+      if (n[0] * (r->motion.x + x - surface->point[0]) + n[1] * (r->motion.y + y - surface->point[1]) <
+            NEAR &&
           fabs(slip) > r->tuning->switch_speed)
         mu[i] = surface->friction.mu_dynamic;
     }
@@ -121,7 +123,8 @@ static void note_onset(run *r, const hand *h)
 static void advance(run *r, const hand *from, const hand *to, double seconds, bool held, bool watch)
 {
   const int steps = r->tuning->steps;
-  const hand speed = {(to->x - from->x) / seconds, (to->y - from->y) / seconds, (to->raw - from->raw) / seconds};
+  const hand speed = {(to->x - from->x) / seconds, (to->y - from->y) / seconds,
+                      (to->raw - from->raw) / seconds};
   double mu[STIC_SURFACES_MAX], force[2], moment;
 
   for (int i = 1; i <= steps && !r->lost; i++) {
@@ -141,7 +144,8 @@ static void advance(run *r, const hand *from, const hand *to, double seconds, bo
 /* The hand takes the object where they are. */
 static void take(run *r, const hand *h)
 {
-  const double c = cos(r->motion.angle), s = sin(r->motion.angle), dx = h->x - r->motion.x, dy = h->y - r->motion.y;
+  const double c = cos(r->motion.angle), s = sin(r->motion.angle), dx = h->x - r->motion.x,
+               dy = h->y - r->motion.y;
 
   r->hold[0] = c * dx + s * dy;
   r->hold[1] = c * dy - s * dx;
@@ -238,12 +242,13 @@ static double hand_at(const peer_scene *p, double t)
 
   while (i + 1 < p->motion.count && (double)s[i].t_ns * 1e-9 < t)
     i++;
-  return s[i - 1].position[0] + (s[i].position[0] - s[i - 1].position[0]) * (t - (double)s[i - 1].t_ns * 1e-9) /
+  return s[i - 1].position[0] + (s[i].position[0] - s[i - 1].position[0]) *
+                                  (t - (double)s[i - 1].t_ns * 1e-9) /
                                   ((double)(s[i].t_ns - s[i - 1].t_ns) * 1e-9);
 }
 
-stic_status peer_contest_run(const peer_contestant *who, const peer_scene *scene, stic_outcome *outcome, double *onset,
-                             stic_error *err)
+stic_status peer_contest_run(const peer_contestant *who, const peer_scene *scene, stic_outcome *outcome,
+                             double *onset, stic_error *err)
 {
   stic_status status;
 

@@ -18,16 +18,47 @@ static const struct {
   double firmness[3];  /* to choose from */
   peer_tuning tuning[KINDS];
 } entries[PEER_ENGINES] = {
-  {&peer_ode, "ODE", "libode-dev", true, false, {0.2, 0.5, 0.8},
+  {&peer_ode,
+   "ODE",
+   "libode-dev",
+   true,
+   false,
+   {0.2, 0.5, 0.8},
    {{32, 0, 0.1, 1, 0.2, 1, 0, 0}, {32, 0, 0.1, 1, 0.2, 1, 0, 1e-3}, {2, 0, 0.5, 1, 0.2, 0.5, 0, 1e-3}}},
-  {&peer_chipmunk, "Chipmunk", "chipmunk-dev", false, false, {0.1, 0.5, 0.9},
+  {&peer_chipmunk,
+   "Chipmunk",
+   "chipmunk-dev",
+   false,
+   false,
+   {0.1, 0.5, 0.9},
    {{32, 30, 0.1, 1, 0.1, 1, 0, 0}, {32, 30, 0.1, 1, 0.1, 1, 0, 1e-3}, {2, 10, 0.5, 1, 0.1, 0.5, 0, 1e-3}}},
-  {&peer_bullet, "Bullet", "libbullet-dev", false, true, {0.1, 0.2, 0.8},
-   {{32, 30, 0.1, 10, 0.2, 1, 0, 0}, {32, 30, 0.1, 10, 0.2, 1, 0, 1e-3}, {2, 10, 0.5, 10, 0.2, 0.5, 0, 1e-3}}},
-  {&peer_box2d, "Box2D", "libbox2d-dev", false, true, {0.2, 0.2, 0.2},
-   {{32, 30, 0.1, 100, 0.2, 1, 0, 0}, {32, 30, 0.1, 100, 0.2, 1, 0, 1e-3}, {2, 10, 0.5, 100, 0.2, 0.5, 0, 1e-3}}},
-  {&peer_mujoco, "MuJoCo", "mujoco-core", true, false, {0.95, 0.99, 0.999},
-   {{32, 10, 0.1, 1, 0.99, 1, 0, 0}, {32, 10, 0.1, 1, 0.99, 1, 0, 1e-3}, {2, 10, 0.5, 1, 0.99, 0.5, 0, 1e-3}}},
+  {&peer_bullet,
+   "Bullet",
+   "libbullet-dev",
+   false,
+   true,
+   {0.1, 0.2, 0.8},
+   {{32, 30, 0.1, 10, 0.2, 1, 0, 0},
+    {32, 30, 0.1, 10, 0.2, 1, 0, 1e-3},
+    {2, 10, 0.5, 10, 0.2, 0.5, 0, 1e-3}}},
+  {&peer_box2d,
+   "Box2D",
+   "libbox2d-dev",
+   false,
+   true,
+   {0.2, 0.2, 0.2},
+   {{32, 30, 0.1, 100, 0.2, 1, 0, 0},
+    {32, 30, 0.1, 100, 0.2, 1, 0, 1e-3},
+    {2, 10, 0.5, 100, 0.2, 0.5, 0, 1e-3}}},
+  {&peer_mujoco,
+   "MuJoCo",
+   "mujoco-core",
+   true,
+   false,
+   {0.95, 0.99, 0.999},
+   {{32, 10, 0.1, 1, 0.99, 1, 0, 0},
+    {32, 10, 0.1, 1, 0.99, 1, 0, 1e-3},
+    {2, 10, 0.5, 1, 0.99, 0.5, 0, 1e-3}}},
 };
 
 int peer_field(peer_contestant out[PEER_CONTESTANTS])
@@ -78,7 +109,9 @@ static stic_status judge(const peer_contestant *who, const peer_scene *scenes, d
     status = peer_contest_run(who, &scenes[i], &o, &onset, err);
     if (status == STIC_OK) {
       peer_contest_score(&scenes[i], &o, onset, &score);
-      *worth += log10(fmax(FLOOR, isfinite(score.difference.position_rms) ? score.difference.position_rms : 1)) / PEER_SCENES;
+      *worth +=
+        log10(fmax(FLOOR, isfinite(score.difference.position_rms) ? score.difference.position_rms : 1)) /
+        PEER_SCENES;
     }
     stic_outcome_free(&o);
   }
@@ -106,12 +139,15 @@ static int choices_of(int entry, int kind, choice out[8])
   const bool cheap = kind == CHEAP;
   int count = 0;
 
-  out[count++] = (choice){offsetof(peer_tuning, steps), true, cheap ? 2 : 7, {1, CHEAP_STEPS, 4, 8, 16, 32, 64}};
-  out[count++] = (choice){offsetof(peer_tuning, iterations), true, cheap ? 2 : 4,
-                          {entries[entry].direct ? 0 : 4, CHEAP_ITERATIONS, 50, 200}};
+  out[count++] =
+    (choice){offsetof(peer_tuning, steps), true, cheap ? 2 : 7, {1, CHEAP_STEPS, 4, 8, 16, 32, 64}};
   out[count++] = (choice){offsetof(peer_tuning, mass), false, 4, {0.05, 0.1, 0.2, 0.5}};
-  out[count++] = (choice){offsetof(peer_tuning, firmness), false, 3, {f[0], f[1], f[2]}};
   out[count++] = (choice){offsetof(peer_tuning, damping), false, 3, {0.3, 0.6, 1}};
+  out[count++] = (choice){offsetof(peer_tuning, iterations),
+                          true,
+                          cheap ? 2 : 4,
+                          {entries[entry].direct ? 0 : 4, CHEAP_ITERATIONS, 50, 200}};
+  out[count++] = (choice){offsetof(peer_tuning, firmness), false, 3, {f[0], f[1], f[2]}};
   out[count++] = (choice){offsetof(peer_tuning, hand_damping), false, 2, {0, 1}};
   if (kind != PLAIN)
     out[count++] = (choice){offsetof(peer_tuning, switch_speed), false, 5, {1e-5, 1e-4, 1e-3, 3e-3, 1e-2}};
@@ -120,31 +156,66 @@ static int choices_of(int entry, int kind, choice out[8])
   return count;
 }
 
-/* One value after the other is tried in all its choices until none makes it better. */
-static stic_status descend(peer_contestant *who, int entry, int kind, const peer_scene *scenes, double *best, stic_error *err)
-{
+typedef struct search {
+  const peer_scene *scenes;
   choice choices[8];
-  const int count = choices_of(entry, kind, choices);
-  stic_status status = judge(who, scenes, best, err);
-  bool better = true;
+  int count;
+  peer_contestant who; /* the best so far */
+  double best;
+} search;
 
-  while (better && status == STIC_OK) {
-    better = false;
-    for (int i = 0; i < count; i++) {
-      for (int k = 0; k < choices[i].count && status == STIC_OK; k++) {
-        peer_contestant trial = *who;
-        double worth;
+/* Takes the tuning over if it is better. */
+static stic_status try_tuning(search *s, const peer_tuning *tuning, stic_error *err)
+{
+  peer_contestant trial = s->who;
+  double worth;
+  stic_status status;
 
-        set(&trial.tuning, &choices[i], k);
-        status = judge(&trial, scenes, &worth, err);
-        if (status == STIC_OK && worth < *best - 1e-3) {
-          *best = worth;
-          *who = trial;
-          better = true;
-        }
+  trial.tuning = *tuning;
+  status = judge(&trial, s->scenes, &worth, err);
+  if (status == STIC_OK && worth < s->best - 1e-3) {
+    s->best = worth;
+    s->who = trial;
+  }
+  return status;
+}
+
+/* All combinations of the three that depend on each other most: steps, mass, damping. */
+static stic_status try_combinations(search *s, stic_error *err)
+{
+  const choice *c = s->choices;
+  const peer_tuning start = s->who.tuning;
+  stic_status status = STIC_OK;
+
+  for (int i = 0; i < c[0].count * c[1].count * c[2].count && status == STIC_OK && stic_cli_signal() == 0;
+       i++) {
+    peer_tuning t = start;
+
+    set(&t, &c[0], i % c[0].count);
+    set(&t, &c[1], i / c[0].count % c[1].count);
+    set(&t, &c[2], i / c[0].count / c[1].count);
+    status = try_tuning(s, &t, err);
+  }
+  return status;
+}
+
+/* Then one value after the other in all its choices, until none makes it better. */
+static stic_status descend(search *s, stic_error *err)
+{
+  stic_status status = try_combinations(s, err);
+  double before;
+
+  do {
+    before = s->best;
+    for (int i = 0; i < s->count; i++) {
+      for (int k = 0; k < s->choices[i].count && status == STIC_OK && stic_cli_signal() == 0; k++) {
+        peer_tuning t = s->who.tuning;
+
+        set(&t, &s->choices[i], k);
+        status = try_tuning(s, &t, err);
       }
     }
-  }
+  } while (s->best < before && status == STIC_OK);
   return status;
 }
 
@@ -154,17 +225,18 @@ stic_status peer_field_tune(const char *only, const peer_scene scenes[PEER_SCENE
 
   for (int i = 0; i < PEER_ENGINES * KINDS && status == STIC_OK && stic_cli_signal() == 0; i++) {
     const int entry = i / KINDS, kind = i % KINDS;
-    peer_contestant who = {.engine = *entries[entry].engine, .tuning = entries[entry].tuning[kind]};
-    const peer_tuning *t = &who.tuning;
-    double best;
+    search s = {.scenes = scenes, .best = INFINITY};
+    const peer_tuning *t = &s.who.tuning;
 
-    if (!who.engine || strncmp(entries[entry].name, only, strlen(only)) != 0)
+    if (!*entries[entry].engine || strncmp(entries[entry].name, only, strlen(only)) != 0)
       continue;
-    status = descend(&who, entry, kind, scenes, &best, err);
+    s.who = (peer_contestant){.engine = *entries[entry].engine, .tuning = entries[entry].tuning[kind]};
+    s.count = choices_of(entry, kind, s.choices);
+    status = descend(&s, err);
     if (status == STIC_OK)
-      printf("%s%s: {%d, %d, %g, %g, %g, %g, %g, %g}, typical error %.3g mm\n", entries[entry].name, kind_names[kind],
-             t->steps, t->iterations, t->mass, t->scale, t->firmness, t->damping, t->hand_damping, t->switch_speed,
-             pow(10, best) * 1e3);
+      printf("%s%s: {%d, %d, %g, %g, %g, %g, %g, %g}, typical error %.3g mm\n", entries[entry].name,
+             kind_names[kind], t->steps, t->iterations, t->mass, t->scale, t->firmness, t->damping,
+             t->hand_damping, t->switch_speed, pow(10, s.best) * 1e3);
     fflush(stdout);
   }
   return status;

@@ -63,32 +63,34 @@ static const char *text(double value, const char *format, char out[32])
 
 static void print_scene(const table *t, int scene)
 {
-  printf("\n%s: %s\n  %-28s %9s %9s %9s %9s %9s %9s %9s %9s %9s %9s\n", t->scenes[scene].name, t->scenes[scene].about, "",
-         "pose rms", "max mm", "angle deg", "force rms", "max %", "onset %", "creep", "drift um", "ns", "worst ns");
+  printf("\n%s: %s\n  %-28s %9s %9s %9s %9s %9s %9s %9s %9s %9s %9s\n", t->scenes[scene].name,
+         t->scenes[scene].about, "", "pose rms", "max mm", "angle deg", "force rms", "max %", "onset %",
+         "creep", "drift um", "ns", "worst ns");
   for (int i = 0; i < t->count; i++) {
     const peer_score *s = &t->scores[i][scene];
     const stic_difference *d = &s->difference;
     char onset[32], creep[32], drift[32];
 
-    printf("  %-28s %9.3g %9.3g %9.3g %9.3g %9.3g %9s %9s %9s %9lld %9lld\n", t->who[i].name, d->position_rms * 1e3,
-           d->position_max * 1e3, d->angle_rms * 57.29577951308232, d->force_rms * 100, d->force_max * 100,
-           text(s->onset * 100, "%.2g", onset), text(s->creep * 1e6, "%.2g", creep), text(s->drift * 1e6, "%.2g", drift),
-           (long long)s->median_ns, (long long)s->worst_ns);
+    printf("  %-28s %9.3g %9.3g %9.3g %9.3g %9.3g %9s %9s %9s %9lld %9lld\n", t->who[i].name,
+           d->position_rms * 1e3, d->position_max * 1e3, d->angle_rms * 57.29577951308232, d->force_rms * 100,
+           d->force_max * 100, text(s->onset * 100, "%.2g", onset), text(s->creep * 1e6, "%.2g", creep),
+           text(s->drift * 1e6, "%.2g", drift), (long long)s->median_ns, (long long)s->worst_ns);
   }
 }
 
 static void write_csv(const table *t, stic_outfile *csv)
 {
-  stic_outfile_print(csv, "scene,contestant,pose_rms_m,pose_max_m,angle_rms_rad,angle_max_rad,force_rms,force_max,"
-                          "onset_error,creep_m_s,drift_m,median_ns,worst_ns,ratio_event,ratio_frame\n");
+  stic_outfile_print(csv,
+                     "scene,contestant,pose_rms_m,pose_max_m,angle_rms_rad,angle_max_rad,force_rms,force_max,"
+                     "onset_error,creep_m_s,drift_m,median_ns,worst_ns,ratio_event,ratio_frame\n");
   for (int scene = 0; scene < PEER_SCENES; scene++) {
     for (int i = 0; i < t->count; i++) {
       const peer_score *s = &t->scores[i][scene];
       const stic_difference *d = &s->difference;
 
       stic_outfile_print(csv, "%s,\"%s\",%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%lld,%lld,%.4g,%.4g\n",
-                         t->scenes[scene].name, t->who[i].name, d->position_rms, d->position_max, d->angle_rms,
-                         d->angle_max, d->force_rms, d->force_max, s->onset, s->creep, s->drift,
+                         t->scenes[scene].name, t->who[i].name, d->position_rms, d->position_max,
+                         d->angle_rms, d->angle_max, d->force_rms, d->force_max, s->onset, s->creep, s->drift,
                          (long long)s->median_ns, (long long)s->worst_ns,
                          (double)s->median_ns / (double)t->scores[0][scene].median_ns,
                          (double)s->median_ns / (double)t->scores[1][scene].median_ns);
@@ -134,16 +136,18 @@ static void print_summary(const table *t)
   const double event = sum_up(t, 0).median, frame = sum_up(t, 1).median;
   char machine[256], onset[32];
 
-  printf("\nAll scenes: errors and times of those that move (rms, geometric mean of medians), creep of those that hold\n");
-  printf("| | pose rms mm | force rms %% | first slip off by %% | creep um/s at 50 %% | 95 %% | 95 %%, tremor | slope "
-         "| ns a frame | worst ns | x event | x frame | note |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|\n");
+  printf(
+    "\nAll scenes: errors and times of those that move (rms, geometric mean of medians), creep of those that hold\n");
+  printf(
+    "| | pose rms mm | force rms %% | first slip off by %% | creep um/s at 50 %% | 95 %% | 95 %%, tremor | slope "
+    "| ns a frame | worst ns | x event | x frame | note |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|\n");
   for (int i = 0; i < t->count; i++) {
     const summary s = sum_up(t, i);
 
-    printf("| %s | %.2g | %.2g | %s | %.2g | %.2g | %.2g | %.2g | %.0f | %.0f | %.3g | %.3g | %s |\n", t->who[i].name,
-           s.pose * 1e3, s.force * 100, text(s.onset * 100, "%.2g", onset), s.creep[0] * 1e6, s.creep[1] * 1e6,
-           s.creep[2] * 1e6, s.creep[3] * 1e6, s.median, s.worst, s.median / event, s.median / frame,
-           t->who[i].engine ? t->who[i].engine->note : "");
+    printf("| %s | %.2g | %.2g | %s | %.2g | %.2g | %.2g | %.2g | %.0f | %.0f | %.3g | %.3g | %s |\n",
+           t->who[i].name, s.pose * 1e3, s.force * 100, text(s.onset * 100, "%.2g", onset), s.creep[0] * 1e6,
+           s.creep[1] * 1e6, s.creep[2] * 1e6, s.creep[3] * 1e6, s.median, s.worst, s.median / event,
+           s.median / frame, t->who[i].engine ? t->who[i].engine->note : "");
   }
   printf("\n%s\n", stic_machine_text(machine, sizeof machine));
 }
@@ -207,9 +211,12 @@ int main(int argc, const char **argv)
   double hold = 100;
   const struct poptOption options[] = {
     {"csv", '\0', POPT_ARG_STRING, &csv, 0, "Write all rows also as CSV", "FILE"},
-    {"repeats", '\0', POPT_ARG_INT | POPT_ARGFLAG_SHOW_DEFAULT, &repeats, 0, "Runs of each; a frame counts with its fastest", "N"},
-    {"hold", '\0', POPT_ARG_DOUBLE | POPT_ARGFLAG_SHOW_DEFAULT, &hold, 0, "How long the still scenes hold; at least 10", "S"},
-    {"tune", '\0', POPT_ARG_STRING, &tune, 0, "Search settings of engines whose name begins so, instead", "NAME"},
+    {"repeats", '\0', POPT_ARG_INT | POPT_ARGFLAG_SHOW_DEFAULT, &repeats, 0,
+     "Runs of each; a frame counts with its fastest", "N"},
+    {"hold", '\0', POPT_ARG_DOUBLE | POPT_ARGFLAG_SHOW_DEFAULT, &hold, 0,
+     "How long the still scenes hold; at least 10", "S"},
+    {"tune", '\0', POPT_ARG_STRING, &tune, 0, "Search settings of engines whose name begins so, instead",
+     "NAME"},
     POPT_TABLEEND};
   stic_cli_args args;
   stic_error err = {0};

@@ -37,11 +37,12 @@ static mjModel *make_model(const stic_scene *scene, const peer_tuning *tuning, d
     double normal[2];
 
     stic_normal_from_degrees(s->normal_deg, normal);
-    n += snprintf(text + n, sizeof text - (size_t)n, "<geom type='plane' size='0 0 1' pos='%.17g %.17g 0' zaxis='%.17g %.17g 0'/>",
+    n += snprintf(text + n, sizeof text - (size_t)n,
+                  "<geom type='plane' size='0 0 1' pos='%.17g %.17g 0' zaxis='%.17g %.17g 0'/>",
                   s->point[0] - scene->x, s->point[1] - scene->y, normal[0], normal[1]);
   }
-  snprintf(text + n, sizeof text - (size_t)n, body, tuning->mass, inertia, inertia, inertia, corner[0], corner[1],
-           scene->depth / 2, scene->angle * (180 / 3.14159265358979323846));
+  snprintf(text + n, sizeof text - (size_t)n, body, tuning->mass, inertia, inertia, inertia, corner[0],
+           corner[1], scene->depth / 2, scene->angle * (180 / 3.14159265358979323846));
   spec = mj_parseXMLString(text, NULL, error, sizeof error);
   if (spec)
     model = mj_compile(spec, NULL);
@@ -101,5 +102,6 @@ static void destroy(void *it)
   free(w);
 }
 
-static const peer_engine engine = {"MuJoCo", "PyPI mujoco", "one coefficient; soft contacts", create, step, read_motion, destroy};
+static const peer_engine engine = {"MuJoCo",    "PyPI mujoco", "one coefficient; soft contacts", create, step,
+                                   read_motion, destroy};
 const peer_engine *const peer_mujoco = &engine;

@@ -117,5 +117,6 @@ static void destroy(void *it)
   free(w);
 }
 
-static const peer_engine engine = {"ODE", "libode-dev", "one coefficient", create, step, read_motion, destroy};
+static const peer_engine engine = {"ODE",       "libode-dev", "one coefficient", create, step,
+                                   read_motion, destroy};
 const peer_engine *const peer_ode = &engine;

@@ -23,7 +23,7 @@ typedef struct peer_tuning {
 
 /* Where the object is and how fast; as the engine has it, so the angle may be cut at pi. */
 typedef struct peer_motion {
-  double x, y, angle;    /* of the body's origin, which is its centre of mass: m, rad */
+  double x, y, angle;     /* of the body's origin, which is its centre of mass: m, rad */
   double vx, vy, turning; /* m/s, rad/s */
 } peer_motion;
 
@@ -41,7 +41,8 @@ typedef struct peer_engine {
 } peer_engine;
 
 /* NULL: not in this build. */
-extern const peer_engine *const peer_ode, *const peer_chipmunk, *const peer_bullet, *const peer_box2d, *const peer_mujoco;
+extern const peer_engine *const peer_ode, *const peer_chipmunk, *const peer_bullet, *const peer_box2d,
+                                                                                      *const peer_mujoco;
 
 #ifdef __cplusplus
 }

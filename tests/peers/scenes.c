@@ -48,9 +48,10 @@ static stic_status lead(peer_scene *p, double x, double y, double seconds, stic_
   for (int i = 1; i <= count; i++, m->count++) {
     const double part = (double)i / count;
 
-    more[m->count] = (stic_sample){.t_ns = (int64_t)m->count * STIC_FRAME_NS,
-                                   .position = {from[0] + (x - from[0]) * part, from[1] + (y - from[1]) * part, 0},
-                                   .orientation = {0, 0, sin(m->scene.angle / 2), cos(m->scene.angle / 2)}};
+    more[m->count] =
+      (stic_sample){.t_ns = (int64_t)m->count * STIC_FRAME_NS,
+                    .position = {from[0] + (x - from[0]) * part, from[1] + (y - from[1]) * part, 0},
+                    .orientation = {0, 0, sin(m->scene.angle / 2), cos(m->scene.angle / 2)}};
   }
   return STIC_OK;
 }
