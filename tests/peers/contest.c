@@ -267,6 +267,13 @@ void peer_contest_score(const peer_scene *p, const stic_outcome *o, double onset
 
   memset(score, 0, sizeof *score);
   stic_outcome_compare(&p->motion, &p->reference, o, 1, &score->difference);
+  if (isnan(o->rows[o->count - 1].x)) /* lost; a maximum would pass over it */
+    score->difference = (stic_difference){.position_rms = NAN,
+                                          .position_max = NAN,
+                                          .angle_rms = NAN,
+                                          .angle_max = NAN,
+                                          .force_rms = NAN,
+                                          .force_max = NAN};
   score->median_ns = stic_outcome_cost(o, 0.5);
   score->worst_ns = stic_outcome_cost(o, 1);
   score->onset = p->onset > 0 ? fabs(onset / p->onset - 1) : NAN;

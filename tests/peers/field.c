@@ -14,8 +14,8 @@ static const char *const kind_names[KINDS] = {"", ", switched mu", ", switched, 
 static const struct {
   const peer_engine *const *engine;
   const char *name, *package;
-  bool direct, scaled; /* has a direct solver; has tolerances of a fixed length */
-  double firmness[3];  /* to choose from */
+  bool without, scaled; /* may do without iterations; has tolerances of a fixed length */
+  double firmness[3];   /* to choose from */
   peer_tuning tuning[KINDS];
 } entries[PEER_ENGINES] = {
   {&peer_ode,
@@ -24,41 +24,45 @@ static const struct {
    true,
    false,
    {0.2, 0.5, 0.8},
-   {{32, 0, 0.1, 1, 0.2, 1, 0, 0}, {32, 0, 0.1, 1, 0.2, 1, 0, 1e-3}, {2, 0, 0.5, 1, 0.2, 0.5, 0, 1e-3}}},
+   {{4, 200, 0.05, 1, 0.2, 0.3, 0, 0},
+    {4, 200, 0.05, 1, 0.2, 0.3, 0, 1e-3},
+    {2, 0, 0.1, 1, 0.2, 0.3, 0, 1e-3}}},
   {&peer_chipmunk,
    "Chipmunk",
    "chipmunk-dev",
    false,
    false,
    {0.1, 0.5, 0.9},
-   {{32, 30, 0.1, 1, 0.1, 1, 0, 0}, {32, 30, 0.1, 1, 0.1, 1, 0, 1e-3}, {2, 10, 0.5, 1, 0.1, 0.5, 0, 1e-3}}},
+   {{4, 50, 0.05, 1, 0.1, 0.3, 0, 0},
+    {4, 50, 0.05, 1, 0.1, 0.3, 0, 1e-3},
+    {2, 10, 0.1, 1, 0.1, 0.3, 0, 1e-3}}},
   {&peer_bullet,
    "Bullet",
    "libbullet-dev",
    false,
    true,
    {0.1, 0.2, 0.8},
-   {{32, 30, 0.1, 10, 0.2, 1, 0, 0},
-    {32, 30, 0.1, 10, 0.2, 1, 0, 1e-3},
-    {2, 10, 0.5, 10, 0.2, 0.5, 0, 1e-3}}},
+   {{4, 50, 0.05, 10, 0.2, 0.3, 0, 0},
+    {4, 50, 0.05, 10, 0.2, 0.3, 0, 1e-3},
+    {2, 10, 0.1, 10, 0.2, 0.3, 0, 1e-3}}},
   {&peer_box2d,
    "Box2D",
    "libbox2d-dev",
    false,
    true,
    {0.2, 0.2, 0.2},
-   {{32, 30, 0.1, 100, 0.2, 1, 0, 0},
-    {32, 30, 0.1, 100, 0.2, 1, 0, 1e-3},
-    {2, 10, 0.5, 100, 0.2, 0.5, 0, 1e-3}}},
+   {{4, 50, 0.05, 100, 0.2, 0.3, 0, 0},
+    {4, 50, 0.05, 100, 0.2, 0.3, 0, 1e-3},
+    {2, 10, 0.1, 100, 0.2, 0.3, 0, 1e-3}}},
   {&peer_mujoco,
    "MuJoCo",
    "mujoco-core",
    true,
    false,
    {0.95, 0.99, 0.999},
-   {{32, 10, 0.1, 1, 0.99, 1, 0, 0},
-    {32, 10, 0.1, 1, 0.99, 1, 0, 1e-3},
-    {2, 10, 0.5, 1, 0.99, 0.5, 0, 1e-3}}},
+   {{4, 50, 0.05, 1, 0.99, 0.3, 0, 0},
+    {4, 50, 0.05, 1, 0.99, 0.3, 0, 1e-3},
+    {2, 10, 0.1, 1, 0.99, 0.3, 0, 1e-3}}},
 };
 
 int peer_field(peer_contestant out[PEER_CONTESTANTS])
@@ -139,14 +143,13 @@ static int choices_of(int entry, int kind, choice out[8])
   const bool cheap = kind == CHEAP;
   int count = 0;
 
-  out[count++] =
-    (choice){offsetof(peer_tuning, steps), true, cheap ? 2 : 7, {1, CHEAP_STEPS, 4, 8, 16, 32, 64}};
+  out[count++] = (choice){offsetof(peer_tuning, steps), true, cheap ? 2 : 6, {1, CHEAP_STEPS, 4, 8, 16, 32}};
   out[count++] = (choice){offsetof(peer_tuning, mass), false, 4, {0.05, 0.1, 0.2, 0.5}};
   out[count++] = (choice){offsetof(peer_tuning, damping), false, 3, {0.3, 0.6, 1}};
   out[count++] = (choice){offsetof(peer_tuning, iterations),
                           true,
                           cheap ? 2 : 4,
-                          {entries[entry].direct ? 0 : 4, CHEAP_ITERATIONS, 50, 200}};
+                          {entries[entry].without ? 0 : 4, CHEAP_ITERATIONS, 50, 200}};
   out[count++] = (choice){offsetof(peer_tuning, firmness), false, 3, {f[0], f[1], f[2]}};
   out[count++] = (choice){offsetof(peer_tuning, hand_damping), false, 2, {0, 1}};
   if (kind != PLAIN)
@@ -171,6 +174,8 @@ static stic_status try_tuning(search *s, const peer_tuning *tuning, stic_error *
   double worth;
   stic_status status;
 
+  if (s->best < INFINITY && memcmp(tuning, &s->who.tuning, sizeof *tuning) == 0)
+    return STIC_OK;
   trial.tuning = *tuning;
   status = judge(&trial, s->scenes, &worth, err);
   if (status == STIC_OK && worth < s->best - 1e-3) {
@@ -180,29 +185,11 @@ static stic_status try_tuning(search *s, const peer_tuning *tuning, stic_error *
   return status;
 }
 
-/* All combinations of the three that depend on each other most: steps, mass, damping. */
-static stic_status try_combinations(search *s, stic_error *err)
-{
-  const choice *c = s->choices;
-  const peer_tuning start = s->who.tuning;
-  stic_status status = STIC_OK;
-
-  for (int i = 0; i < c[0].count * c[1].count * c[2].count && status == STIC_OK && stic_cli_signal() == 0;
-       i++) {
-    peer_tuning t = start;
-
-    set(&t, &c[0], i % c[0].count);
-    set(&t, &c[1], i / c[0].count % c[1].count);
-    set(&t, &c[2], i / c[0].count / c[1].count);
-    status = try_tuning(s, &t, err);
-  }
-  return status;
-}
-
-/* Then one value after the other in all its choices, until none makes it better. */
+/* One value after the other in all its choices, until none makes it better. */
 static stic_status descend(search *s, stic_error *err)
 {
-  stic_status status = try_combinations(s, err);
+  const peer_tuning start = s->who.tuning;
+  stic_status status = try_tuning(s, &start, err);
   double before;
 
   do {
