@@ -3,6 +3,7 @@
 #   ./check.sh            everything
 #   ./check.sh --quick    one build, without the slow labels
 #   ./check.sh --peers    no tests, but a table of stiction beside dynamics engines (tests/peers/README.md)
+#   ./check.sh --coverage counts which lines and branches of src/ and drivers/ the tests run, and lists the others
 set -euo pipefail
 cd "$(dirname "$0")"
 . .ci/packages.sh
@@ -25,11 +26,18 @@ if [ "${1:-}" = --peers ]; then
   exec build-peers/stiction_peers --csv build-peers/peers.csv
 fi
 
-need build run video devices view test
+need build run video devices view test check
 
 if [ "${1:-}" = --quick ]; then
   configure_and_build ci
-  exec ctest --preset ci -LE 'slow|kernel|fuzz' -j "$(nproc)"
+  exec ctest --preset ci -LE 'slow|kernel|fuzz|lint|valgrind|install' -j "$(nproc)"
+fi
+
+if [ "${1:-}" = --coverage ]; then
+  configure_and_build coverage
+  ctest --preset coverage -LE 'slow|kernel|fuzz' -j "$(nproc)" # guests of the kernel tests bring no counts back
+  # our own objects alone: those of tests compile parts of them once more
+  exec gcovr --root . build-coverage --exclude-directories '.*/tests/.*' --filter src/ --filter drivers/ --print-summary
 fi
 
 configure_and_build ci-clang

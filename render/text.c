@@ -52,8 +52,8 @@ stic_font *stic_font_create(bool bold, double pixels)
   }
   scale = stbtt_ScaleForPixelHeight(&info, (float)pixels);
   stbtt_GetFontVMetrics(&info, &ascent, &descent, &gap);
-  font->ascent = (int)ceil(ascent * scale);
-  font->height = (int)ceil((ascent - descent) * scale);
+  font->ascent = (int)ceilf((float)ascent * scale);
+  font->height = (int)ceilf((float)(ascent - descent) * scale);
   for (int i = 0; i < GLYPH_COUNT; i++) {
     glyph *g = &font->glyphs[i];
     int code = i < ASCII_COUNT ? ASCII_FIRST + i : signs[i - ASCII_COUNT], advance, bearing;

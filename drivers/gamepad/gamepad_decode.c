@@ -72,7 +72,7 @@ static uint32_t decode_buttons(const uint8_t *keys)
 static stic_gamepad_result decode_common(const uint8_t *at, stic_gamepad *pad)
 {
   /* clockwise from up; the last is the centre */
-  static const signed char directions[HAT_CENTRE + 1][2] = {{0, 1},   {1, 1},  {1, 0},  {1, -1}, {0, -1},
+  static const int directions[HAT_CENTRE + 1][2] = {{0, 1},   {1, 1},  {1, 0},  {1, -1}, {0, -1},
                                                             {-1, -1}, {-1, 0}, {-1, 1}, {0, 0}};
   const int hat = at[AT_KEYS] & 0x0f;
 

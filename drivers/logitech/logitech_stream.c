@@ -28,7 +28,7 @@ static uint32_t buttons_of(const stic_logitech_record *record)
   uint32_t buttons = 0;
 
   for (size_t i = 0; i < sizeof map / sizeof map[0]; i++)
-    buttons |= record->bits & map[i].wire ? map[i].button : 0;
+    buttons |= (record->bits & map[i].wire) ? map[i].button : 0;
   return buttons;
 }
 

@@ -331,7 +331,7 @@ static stic_status bench_program(bool quick, stic_error *err)
     start_up ? set_up(&w, samples, err) : stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
   bool good = true;
 
-  if (status != STIC_OK) {
+  if (!start_up || status != STIC_OK) {
     free(start_up);
     return status;
   }

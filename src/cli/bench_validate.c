@@ -312,7 +312,7 @@ static void stick_slip(table *t)
  * keep the hand's first angle below pi, where a tracker's begins again at -pi. */
 #define SLIVER_A 0.09
 #define SLIVER_D 0.12
-#define SLIVER_TURN -0.4
+#define SLIVER_TURN (-0.4)
 
 static void start_sliver(stand *s, table *t, double e, double upright, double u)
 {

@@ -242,7 +242,7 @@ stic_status stic_motion_resample(const stic_motion *from, stic_motion *to, stic_
 {
   const int64_t start = from->samples[0].t_ns,
                 length = (from->samples[from->count - 1].t_ns - start) / FINE_NS;
-  knot *knots = malloc((size_t)from->count * sizeof *knots);
+  knot *knots = calloc((size_t)from->count, sizeof *knots);
   double angle = 0;
 
   memset(to, 0, sizeof *to);

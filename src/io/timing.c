@@ -189,6 +189,7 @@ static void processor_name(char *out, size_t out_size)
 
     if (strncmp(line, "model name", 10) != 0 || !colon)
       continue;
+    /* cppcheck-suppress unreadVariable // read through `colon` */
     line[strcspn(line, "\n")] = '\0';
     stic_error_quote(colon + 2, strlen(colon + 2), out, out_size);
     break;

@@ -299,7 +299,7 @@ static bool viscous_flow(core *c)
     f.contacts[i] = c->contacts[i];
   if (!find_modes(&f))
     return false;
-  touch t;
+  touch t = {R_HUGE, -1, -1};
   flow_pose q = flow_along(&f, (flow_pose){c->p, c->theta}, &t);
   set_flow_pose(c, q);
   for (int i = f.count - 1; i >= 0; i--)

@@ -307,7 +307,6 @@ static void follow_event(core *c, hand from, hand to, double t_from, double t_to
   for (int events = 0; tau < 1; events++) {
     if (events == SAMPLE_EVENTS_MAX) {
       c->report->flags |= STIC_FLAG_LIMIT;
-      tau = 1;
       relax(c, to, t_to);
       c->window_open = c->happened && !c->sliding;
       break;

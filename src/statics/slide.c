@@ -102,7 +102,8 @@ static bool normals_along_walls(const core *c, int first, int second, real sense
   const surface *a = &c->body.surfaces[i->surface], *b = &c->body.surfaces[k->surface];
   vec force = spring_force(c), g = holding_point(c), d = v_sub(k->place, i->place);
   real pressed = -v_dot(force, a->n), facing = r_sign(v_dot(a->n, b->n)), lever, scale;
-  if (facing > 0) {
+  const bool is_edge = facing > 0;
+  if (is_edge) {
     scale = v_length(d);
     lever = v_cross(d, b->n);
   } else {
@@ -115,7 +116,7 @@ static bool normals_along_walls(const core *c, int first, int second, real sense
   }
   if (r_abs(lever) <= 16 * REAL_EPSILON * scale)
     return false;
-  if (facing > 0) {
+  if (is_edge) {
     p->second = -spring_moment_about(c, i->place) / lever;
     p->second_rate = sense * v_cross(v_sub(g, i->place), a->t) / lever;
   }
