@@ -33,10 +33,10 @@ static void destroy(stic_live *live)
   free(live);
 }
 
-static stic_status make_queues(stic_live *live, const stic_live_settings *s, stic_error *err)
+/* What the reader needs. */
+static stic_status make_inputs(stic_live *live, const stic_live_settings *s, stic_error *err)
 {
   const size_t samples = s->queue_samples > 0 ? s->queue_samples : STIC_LIVE_SAMPLES;
-  const size_t rows = s->queue_rows > 0 ? s->queue_rows : STIC_LIVE_ROWS;
   stic_status status = stic_wake_create(&live->to_solver, err);
 
   if (status == STIC_OK)
@@ -44,15 +44,21 @@ static stic_status make_queues(stic_live *live, const stic_live_settings *s, sti
   if (status == STIC_OK)
     status = stic_ring_create(sizeof(live_sample), samples, &live->samples, err);
   if (status == STIC_OK)
-    status = stic_ring_create(sizeof(live_row), rows, &live->rows, err);
+    status = stic_latest_create(sizeof(live_status), &live->status, err);
+  return status;
+}
+
+static stic_status make_outputs(stic_live *live, const stic_live_settings *s, stic_error *err)
+{
+  const size_t rows = s->queue_rows > 0 ? s->queue_rows : STIC_LIVE_ROWS;
+  stic_status status = stic_ring_create(sizeof(live_row), rows, &live->rows, err);
+
   if (status == STIC_OK && s->events)
     status = stic_ring_create(sizeof(stic_event), STIC_LIVE_EVENTS, &live->events, err);
   if (status == STIC_OK && s->pictures)
     status = stic_ring_create(sizeof(live_picture), STIC_LIVE_PICTURES, &live->pictures, err);
   if (status == STIC_OK)
     status = stic_latest_create(sizeof(stic_live_view_item), &live->view, err);
-  if (status == STIC_OK)
-    status = stic_latest_create(sizeof(live_status), &live->status, err);
   return status;
 }
 
@@ -115,7 +121,6 @@ static stic_status no_thread(int problem, stic_error *err)
   return stic_error_set(err, STIC_FAILED, NULL, 0, "cannot start a thread: %s", strerror(problem));
 }
 
-/* The pictures first: what they cannot open is known before the first sample. */
 static stic_status start_pictures(stic_live *live, stic_error *err)
 {
   live_pictures *p = &live->picture_maker;
@@ -129,19 +134,24 @@ static stic_status start_pictures(stic_live *live, stic_error *err)
   return p->open_status;
 }
 
-static stic_status start_threads(stic_live *live, stic_error *err)
+/* The reader first: a device that has been opened must not wait for the rest, which takes a while. The solver last,
+ * so that whatever is refused is so before the first sample is solved. */
+static stic_status start_threads(stic_live *live, const stic_live_settings *s, stic_error *err)
 {
-  stic_status status = live->pictures ? start_pictures(live, err) : STIC_OK;
+  stic_status status = make_inputs(live, s, err);
   int problem = 0;
 
-  if (status != STIC_OK)
-    return status;
-  problem = start_thread(live, stic_live_writer_main, 0);
-  if (problem == 0)
-    problem = start_thread(live, stic_live_solver_main, STACK_BYTES);
-  if (problem == 0)
+  if (status == STIC_OK)
     problem = start_thread(live, stic_live_reader_main, STACK_BYTES);
-  return problem == 0 ? STIC_OK : no_thread(problem, err);
+  if (status == STIC_OK && problem == 0)
+    status = make_outputs(live, s, err);
+  if (status == STIC_OK && problem == 0 && live->pictures)
+    status = start_pictures(live, err);
+  if (status == STIC_OK && problem == 0)
+    problem = start_thread(live, stic_live_writer_main, 0);
+  if (status == STIC_OK && problem == 0)
+    problem = start_thread(live, stic_live_solver_main, STACK_BYTES);
+  return problem == 0 ? status : no_thread(problem, err);
 }
 
 static void join_all(stic_live *live)
@@ -162,7 +172,7 @@ static int ask_for_fifo(pthread_t thread, int above)
  * stacks of the loop are there already. */
 static void ask_for_real_time(stic_live *live)
 {
-  const pthread_t *const solver = &live->threads[live->thread_count - 2], *const reader = solver + 1;
+  const pthread_t *const reader = &live->threads[0], *const solver = &live->threads[live->thread_count - 1];
   char policy[120], memory[120];
   int problem = ask_for_fifo(*reader, PRIORITY_ABOVE_MIN + 1);
 
@@ -179,18 +189,11 @@ static void ask_for_real_time(stic_live *live)
   snprintf(live->scheduling, sizeof live->scheduling, "%s, %s", policy, memory);
 }
 
-static void let_go(stic_live *live)
-{
-  sem_post(&live->go);
-  sem_post(&live->go);
-}
-
 static void give_up(stic_live *live)
 {
-  live_raise(&live->reader_done);
   live_raise(&live->solver_done);
   stic_live_stop(live);
-  let_go(live);
+  sem_post(&live->go);
   join_all(live);
   destroy(live);
 }
@@ -204,20 +207,17 @@ stic_status stic_live_start(const stic_live_settings *settings, stic_live **out,
   *out = NULL;
   if (!live)
     return stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
-  status = make_queues(live, settings, err);
-  if (status == STIC_OK) {
-    /* Threads inherit the mask: signals are the caller's. */
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    status = start_threads(live, err);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-  }
+  /* Threads inherit the mask: signals are the caller's. */
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  status = start_threads(live, settings, err);
+  pthread_sigmask(SIG_SETMASK, &before, NULL);
   if (status != STIC_OK) {
     give_up(live);
     return status;
   }
   ask_for_real_time(live);
-  let_go(live);
+  sem_post(&live->go);
   *out = live;
   return STIC_OK;
 }

@@ -16,7 +16,7 @@
 #define STIC_LIVE_PICTURES 1024
 #define STIC_LIVE_AHEAD 4096            /* samples that a source without haste may be ahead of the solver */
 #define STIC_LIVE_DRAIN_NS 100000000    /* after a stop the solver goes on for so long with what was read */
-#define STIC_LIVE_LOOK_NS 4000000       /* how often a thread looks into a queue that nobody wakes it for */
+#define STIC_LIVE_LOOK_NS 10000000      /* how often a thread looks into a queue that nobody wakes it for */
 #define STIC_LIVE_PICTURE_LAG 250000000 /* ns that a picture may be late and still be drawn */
 
 /* Reader to solver. */
@@ -94,7 +94,7 @@ struct stic_live {
   live_solver solver;
   live_writer writer;
   live_pictures picture_maker;
-  sem_t go; /* posted once for the solver and once for the reader when all is prepared */
+  sem_t go; /* posted for the solver when all is prepared */
   int thread_count;
   pthread_t threads[4];
   char scheduling[300];

@@ -91,7 +91,6 @@ void *stic_live_reader_main(void *context)
 {
   stic_live *live = context;
 
-  live_await(&live->go);
   while (!live_flag(&live->stopping) && read_some(live))
     ;
   live_raise(&live->reader_done);
