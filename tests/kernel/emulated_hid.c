@@ -2,12 +2,13 @@
  *
  *   uhid-devices NAME, gadget-device NAME
  *
- * The device is plugged in, waits until a driver is at work, makes one gesture (a second long: grip, push to
+ * The device is plugged in, waits until a driver is at work, makes its gesture (a second long: grip, push to
  * the right, let go), is pulled out, plugged in again, and repeats the gesture until the driver says farewell.
  * Exit code 0: all of that happened; 1: not within the time; 77: it cannot be plugged into this kernel. */
 #include "emulated_hid.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -390,7 +391,7 @@ static void send_report(stic_emulator *e, int64_t t_ms)
   stic_port_send(e, interface, report, length);
 }
 
-/* Makes the gesture: once, or until the driver says farewell. False if no driver came, or none left. */
+/* Makes the gesture: as often as ordered, or until the driver says farewell. False if no driver came, or none left. */
 static bool perform(stic_emulator *e, bool until_farewell)
 {
   const int64_t plugged_ms = stic_emulator_now_ms();
@@ -400,7 +401,7 @@ static bool perform(stic_emulator *e, bool until_farewell)
     stic_port_serve(e, next_ms);
     if (!e->at_work)
       begun_ms = next_ms;
-    else if (until_farewell ? e->farewell : next_ms - begun_ms >= CYCLE_MS)
+    else if (until_farewell ? e->farewell : next_ms - begun_ms >= e->gestures * CYCLE_MS)
       return true;
     if (next_ms - plugged_ms > PATIENCE_MS)
       return false;
@@ -450,7 +451,7 @@ static const stic_emulated_device *find_device(const char *name)
 
 static int usage(const char *program)
 {
-  fprintf(stderr, "usage: %s NAME, one of:", program);
+  fprintf(stderr, "usage: %s NAME [GESTURES before it is pulled out], NAME one of:", program);
   for (size_t i = 0; i < DEVICE_COUNT; i++)
     fprintf(stderr, " %s", devices[i].name);
   fputc('\n', stderr);
@@ -462,7 +463,8 @@ int main(int argc, char **argv)
   stic_emulator e;
 
   memset(&e, 0, sizeof e);
-  e.device = argc == 2 ? find_device(argv[1]) : NULL;
+  e.device = argc == 2 || argc == 3 ? find_device(argv[1]) : NULL;
+  e.gestures = argc == 3 ? atoi(argv[2]) : 1;
   if (!e.device)
     return usage(argv[0]);
   if (!stic_port_open(&e))

@@ -33,6 +33,7 @@ typedef struct stic_emulated_device {
 struct stic_emulator {
   const stic_emulated_device *device;
   int files[STIC_INTERFACES_MAX];
+  int gestures;   /* before it is pulled out */
   int open_count; /* by drivers, of all interfaces */
   bool at_work;   /* a driver has set the device up: the gesture begins */
   bool farewell;  /* ... and has left it as it was */

@@ -1,9 +1,10 @@
 #!/bin/bash
 # Boots a real kernel in qemu and lets the real drivers read emulated HID devices there.
 #
-#   run.sh uhid|usb CACHE PROGRAM...
+#   run.sh uhid|run|usb CACHE PROGRAM...
 #
 # uhid: all emulated devices through /dev/uhid, on Debian's small cloud kernel.
+# run: stiction run itself through the life of one of them, on the same kernel.
 # usb: a SpaceNavigator as a USB gadget, on Debian's full kernel, with its hid-logitech and udevd.
 # PROGRAMs go into the guest under their own names. CACHE keeps the kernels between runs; packages are fetched by
 # apt-get download and unpacked, not installed. Exit code 0: passed, 77: cannot run here (says why), 1: failed.
@@ -31,7 +32,7 @@ done
 
 # The cloud kernel has no Logitech driver, which would refuse a SpaceNavigator that is on no USB bus.
 case $kind in
-uhid)
+uhid | run)
   meta=linux-image-cloud-amd64 modules="hid hid-generic uhid" packages=busybox-static
   ;;
 usb)
@@ -39,7 +40,7 @@ usb)
   modules="dummy_hcd usb_f_hid usbhid hid-generic hid-logitech"
   ;;
 *)
-  echo "usage: run.sh uhid|usb CACHE PROGRAM..." >&2
+  echo "usage: run.sh uhid|run|usb CACHE PROGRAM..." >&2
   exit 1
   ;;
 esac
