@@ -89,7 +89,7 @@ static void widen(const stic_viewer *v, stic_extent *extent)
   stic_extent_init(extent);
   stic_extent_add(extent, &v->scene, &v->newest.result);
   for (int k = 0; k < 2; k++) {
-    extent->low[k] -= room * (k ? 0.2 : 1);
+    extent->low[k] -= room * (k ? 0.55 : 1);
     extent->high[k] += room * (k ? 0.5 : 1);
   }
 }
