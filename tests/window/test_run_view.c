@@ -77,44 +77,85 @@ static void drag(stic_xvfb *x, double pixel[2], const double to[2])
   pause_ms(100);
 }
 
+/* Brings the pointer to a place, m: the pixels of others tell where that is, once the camera rests. */
+static void point_at(stic_xvfb *x, const double place[2], double pixels[2][2], double places[2][2],
+                     double at[2])
+{
+  for (int i = 0; i < 8; i++) {
+    double got[2];
+
+    for (int k = 0; k < 2; k++) {
+      pixels[k][0] = 360 + 80 * k + i;
+      pixels[k][1] = 200 + 60 * k + i;
+      point(x, pixels[k], places[k]);
+    }
+    pixel_of(place, pixels, places, at);
+    point(x, at, got);
+    if (fabs(got[0] - place[0]) < 0.002 && fabs(got[1] - place[1]) < 0.002)
+      return;
+  }
+  fail_msg("the hand is not where the pointer is");
+}
+
+/* Waits until the recording's last sample has the hand's angle (rad) and is pressed. */
+static void await_angle(double angle)
+{
+  double row[9] = {0};
+
+  for (int i = 0; i < 500; i++) {
+    if (last_numbers(stic_test_path("hand.csv"), row, 9) && fabs(2 * atan2(row[6], row[7]) - angle) < 1e-9) {
+      assert_true(row[3] == 0 && row[8] == 1);
+      return;
+    }
+    pause_ms(20);
+  }
+  fail_msg("the wheel turned the hand to %g degrees, not to %g", 2 * atan2(row[6], row[7]) / DEGREE,
+           angle / DEGREE);
+}
+
+/* Waits until it has moved away from the user and is let go or still pressed, as given. */
+static void await_away(bool pressed)
+{
+  double row[9] = {0};
+
+  for (int i = 0; i < 500; i++) {
+    if (last_numbers(stic_test_path("hand.csv"), row, 9) && row[3] < 0 && (row[8] == 1) == pressed)
+      return;
+    pause_ms(20);
+  }
+  fail_msg("the hand did not move away or was not let go");
+}
+
+static void turn_wheel(stic_xvfb *x, unsigned button, const char *key)
+{
+  if (key)
+    stic_xvfb_hold_key(x, key, true);
+  stic_xvfb_button(x, button, true);
+  stic_xvfb_button(x, button, false);
+  if (key)
+    stic_xvfb_hold_key(x, key, false);
+}
+
 /* The session of a user; all places in m. */
 static void use_mouse(stic_xvfb *x)
 {
-  double pixels[2][2] = {{360, 200}, {440, 260}}, places[2][2], at[2], to[2];
-  double row[9];
+  double pixels[2][2], places[2][2], at[2], to[2];
 
-  point(x, pixels[0], places[0]);
-  point(x, pixels[1], places[1]);
-  pixel_of((double[2]){0.12, 0.04}, pixels, places, at);
-  point(x, at, to);
-  assert_true(fabs(to[0] - 0.12) < 0.002 && fabs(to[1] - 0.04) < 0.002);
+  point_at(x, (double[2]){0.12, 0.04}, pixels, places, at);
   stic_xvfb_button(x, 1, true);
   pixel_of((double[2]){0.12, 0.02}, pixels, places, to);
   drag(x, at, to);
   pixel_of((double[2]){0.22, 0.02}, pixels, places, to);
   drag(x, at, to);
-  for (int i = 0; i < 5; i++) {
-    stic_xvfb_button(x, 4, true);
-    stic_xvfb_button(x, 4, false);
-    pause_ms(30);
-  }
-  stic_xvfb_hold_key(x, "Shift_L", true);
-  stic_xvfb_button(x, 5, true);
-  stic_xvfb_button(x, 5, false);
-  stic_xvfb_hold_key(x, "Shift_L", false);
-  pause_ms(100);
-  assert_true(last_numbers(stic_test_path("hand.csv"), row, 9));
-  assert_true(fabs(2 * atan2(row[6], row[7]) - 9.75 * DEGREE) < 1e-9);
-  assert_true(row[3] == 0 && row[8] == 1);
-  stic_xvfb_hold_key(x, "Control_L", true);
-  stic_xvfb_button(x, 4, true);
-  stic_xvfb_button(x, 4, false);
-  stic_xvfb_hold_key(x, "Control_L", false);
-  pause_ms(100);
-  assert_true(last_numbers(stic_test_path("hand.csv"), row, 9));
-  assert_true(row[3] < 0);
+  for (int i = 0; i < 5; i++)
+    turn_wheel(x, 4, NULL);
+  await_angle(10 * DEGREE);
+  turn_wheel(x, 5, "Shift_L");
+  await_angle(9.75 * DEGREE);
+  turn_wheel(x, 4, "Control_L");
+  await_away(true);
   stic_xvfb_button(x, 1, false);
-  pause_ms(100);
+  await_away(false);
 }
 
 static char *rows_of(const char *path)
