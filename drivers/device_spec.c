@@ -48,6 +48,7 @@ stic_status stic_spec_parse(const char *text, stic_device_spec *spec, stic_error
   stic_status status = STIC_OK;
   char *rest;
 
+  spec->again = false;
   spec->pair_count = 0;
   if (strlen(text) >= sizeof spec->text)
     return stic_error_set(err, STIC_USAGE, NULL, 0, "the device specification is longer than %d bytes",

@@ -102,11 +102,12 @@ stic_gamepad_result stic_gamepad_decode(const uint8_t *report, size_t length, st
   case ID_USB:
     if (length == REDUCED_LENGTH)
       return STIC_GAMEPAD_REDUCED;
-    if (length < USB_LENGTH)
+    /* Exactly: without a checksum, a longer one may be a Bluetooth report behind a surplus byte. */
+    if (length != USB_LENGTH)
       return STIC_GAMEPAD_BAD_LENGTH;
     return decode_common(report + USB_START, pad);
   case ID_BLUETOOTH:
-    if (length < BLUETOOTH_LENGTH)
+    if (length != BLUETOOTH_LENGTH)
       return STIC_GAMEPAD_BAD_LENGTH;
     if (stic_gamepad_crc(report, BLUETOOTH_LENGTH - CRC_LENGTH) !=
         little_endian_32(report + BLUETOOTH_LENGTH - CRC_LENGTH))
