@@ -210,6 +210,70 @@ static void test_run_and_replay(void **state)
   free(again);
 }
 
+/* The value of a "# key: value" line; the caller frees. */
+static char *provenance(const char *log, const char *key)
+{
+  char start[64], *value;
+  const char *at;
+  size_t length;
+
+  snprintf(start, sizeof start, "\n# %s: ", key);
+  at = strstr(log, start);
+  assert_non_null(at);
+  at += strlen(start);
+  length = strcspn(at, "\n");
+  value = malloc(length + 1);
+  memcpy(value, at, length);
+  value[length] = '\0';
+  return value;
+}
+
+/* The choice is written down, and a replay with it gives the run's rows. */
+static void check_auto(const char *budget, const char *said, const char *noted)
+{
+  const char *log = stic_test_path("auto.csv"), *record = stic_test_path("auto-record.csv"),
+             *again = stic_test_path("auto-again.csv");
+  char device[300], *live, *recorded, *replayed, *accuracy, *precision, *note;
+
+  snprintf(device, sizeof device, "trace:speed=100,file=%s", trace);
+  expect(stic_test_program("run", scene, "--device", device, "--accuracy", "auto", "--record", record,
+                           "--log", log, budget ? "--budget-ns" : NULL, budget, NULL),
+         0, said);
+  live = stic_test_read(log);
+  recorded = stic_test_read(record);
+  accuracy = provenance(live, "accuracy");
+  precision = provenance(live, "precision");
+  stic_test_contains(accuracy, noted);
+  stic_test_contains(recorded, accuracy);
+  stic_test_contains(recorded, precision);
+  note = strstr(accuracy, " (auto");
+  assert_non_null(note);
+  *note = '\0';
+  expect(stic_test_program("replay", scene, record, "--accuracy", accuracy, "--precision", precision, "--log",
+                           again, NULL),
+         0, "");
+  replayed = stic_test_read(again);
+  assert_string_equal(strstr(live, "\nt,state"), strstr(replayed, "\nt,state"));
+  free(live);
+  free(recorded);
+  free(replayed);
+  free(accuracy);
+  free(precision);
+}
+
+static void test_auto(void **state)
+{
+  (void)state;
+  check_auto(NULL, "accuracy auto: ", "(auto, budget 3225806 ns)");
+  check_auto("1", "warning: accuracy auto: ", "(auto, budget 1 ns)");
+  check_auto("100000000000", "accuracy auto: event ", "event (auto, budget 100000000000 ns)");
+  expect(stic_test_program("replay", scene, trace, "--accuracy", "auto", NULL), 2, "'auto' is for run only");
+  expect(stic_test_program("run", scene, "--device", "x", "--accuracy", "auto", "--precision", "f64", NULL),
+         2, "does not go with it");
+  expect(stic_test_program("run", scene, "--device", "x", "--accuracy", "auto", "--budget-ns", "0", NULL), 2,
+         "expected at least 1");
+}
+
 static void test_standard_streams(void **state)
 {
   const char *const arguments[] = {"replay", scene, "-", "--log", "-", NULL};
@@ -313,12 +377,19 @@ static void test_bench(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_help),           cmocka_unit_test(test_usage),
-    cmocka_unit_test(test_bad_files),      cmocka_unit_test(test_outputs),
-    cmocka_unit_test(test_signal_replay),  cmocka_unit_test(test_signal_run),
-    cmocka_unit_test(test_run_and_replay), cmocka_unit_test(test_standard_streams),
-    cmocka_unit_test(test_closed_pipe),    cmocka_unit_test(test_run_frames),
-    cmocka_unit_test(test_frames),         cmocka_unit_test(test_bench),
+    cmocka_unit_test(test_help),
+    cmocka_unit_test(test_usage),
+    cmocka_unit_test(test_bad_files),
+    cmocka_unit_test(test_outputs),
+    cmocka_unit_test(test_signal_replay),
+    cmocka_unit_test(test_signal_run),
+    cmocka_unit_test(test_run_and_replay),
+    cmocka_unit_test(test_auto),
+    cmocka_unit_test(test_standard_streams),
+    cmocka_unit_test(test_closed_pipe),
+    cmocka_unit_test(test_run_frames),
+    cmocka_unit_test(test_frames),
+    cmocka_unit_test(test_bench),
   };
 
   return cmocka_run_group_tests(tests, set_up, stic_test_clean_up);
