@@ -9,7 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 /* 2000 samples, so that p99.9 is not the worst of them, and 13 settings within 2 s. */
 enum { SAMPLES = 2000, RUNS = 3 };
@@ -45,24 +44,15 @@ static int64_t p999(int64_t *cost, int count)
   return count > 0 ? cost[(count - 1) - count / 1000] : INT64_MAX;
 }
 
-/* Of this thread alone: others that run meanwhile would look like slow samples. */
-static int64_t computing_ns(void)
-{
-  struct timespec now;
-
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
-}
-
-/* What reading that clock costs: about as much as a small step. */
+/* What reading the thread's clock costs. */
 static int64_t clock_cost_ns(void)
 {
   int64_t cost[101];
 
   for (int i = 0; i < 101; i++) {
-    const int64_t start_ns = computing_ns();
+    const int64_t start_ns = stic_clock_thread_ns();
 
-    cost[i] = computing_ns() - start_ns;
+    cost[i] = stic_clock_thread_ns() - start_ns;
   }
   qsort(cost, 101, sizeof *cost, by_size);
   return cost[50];
@@ -85,12 +75,12 @@ static stic_status try_settings(const stic_motion *motion, stic_auto_try *attemp
 
     if (status != STIC_OK)
       return status;
-    now_ns = computing_ns();
+    now_ns = stic_clock_thread_ns();
     for (int i = 0; i < motion->count && stic_clock_ns() < end_ns; i++) {
       const int64_t start_ns = now_ns;
 
       stic_sim_step(sim, &motion->samples[i], &result);
-      now_ns = computing_ns();
+      now_ns = stic_clock_thread_ns();
       if (now_ns - start_ns - clock_ns < cost[i])
         cost[i] = now_ns - start_ns - clock_ns;
       count = i >= count ? i + 1 : count;

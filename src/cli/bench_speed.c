@@ -4,8 +4,10 @@
 #include "../io/log_csv.h"
 #include "../io/timing.h"
 #include "../io/trace_csv.h"
+#include "../sim.h"
 #include "bench.h"
 #include "cli.h"
+#include "trade.h"
 
 #include <math.h>
 #include <spawn.h>
@@ -210,6 +212,99 @@ static stic_status bench_vertices(bool quick, measurement *m, stic_error *err)
   return STIC_OK;
 }
 
+/* ---- what is left out of the model --------------------------------------------------------- */
+
+enum { CHOICES = STIC_LEAVE_ALL + 1 };
+
+typedef struct part_case {
+  const char *name;
+  int vertices, further; /* BOX or a polygon's; surfaces besides the two */
+  double depth;          /* m, of these under the floor, from one to the next; 0: a bowl around */
+  double mu_s, mu_d, k_theta;
+} part_case;
+
+/* Mean ns of a sample, and of making the simulation. */
+static stic_status time_choice(const stic_motion *motion, const stic_settings *settings, unsigned leave_out,
+                               double *sample_ns, double *make_ns, stic_error *err)
+{
+  const int64_t start_ns = stic_clock_thread_ns();
+  stic_result result;
+  stic_sim *sim;
+  const stic_status status = stic_sim_create_parts(&motion->scene, settings, leave_out, &sim, err);
+  const int64_t made_ns = stic_clock_thread_ns();
+
+  if (status != STIC_OK)
+    return status;
+  for (int i = 0; i < motion->count; i++)
+    stic_sim_step(sim, &motion->samples[i], &result);
+  *sample_ns = fmin(*sample_ns, (double)(stic_clock_thread_ns() - made_ns) / motion->count);
+  *make_ns = fmin(*make_ns, (double)(made_ns - start_ns));
+  stic_sim_destroy(sim);
+  return STIC_OK;
+}
+
+/* One row: all choices in turn, the fastest run of each. */
+static stic_status bench_part(const part_case *c, stic_level level, bool quick, stic_error *err)
+{
+  double sample_ns[CHOICES], make_ns[CHOICES];
+  stic_settings settings;
+  stic_motion motion;
+  stic_scene scene;
+  stic_status status;
+
+  make_scene(&scene, c->vertices);
+  for (int i = 0; i < c->further; i++) {
+    const double way = (i + 0.5) / c->further * 90;
+
+    if (c->depth > 0)
+      add_surface(&scene, 0, -c->depth * (i + 1), 90);
+    else
+      add_surface(&scene, 10 * cos(way * PI / 180), 10 * sin(way * PI / 180), way + 180);
+  }
+  for (int s = 0; s < scene.surface_count; s++)
+    scene.surfaces[s].friction = (stic_friction){c->mu_s, c->mu_d};
+  scene.rotational_stiffness = c->k_theta;
+  stic_settings_init(&settings);
+  settings.level = level;
+  status = stic_motion_along_surfaces(&motion, &scene, quick ? 100 : 1000, err);
+  for (int k = 0; k < CHOICES; k++)
+    sample_ns[k] = make_ns[k] = INFINITY;
+  for (int run = 0; run < (quick ? 2 : 9); run++)
+    for (unsigned k = 0; k < CHOICES && status == STIC_OK && stic_cli_signal() == 0; k++)
+      status = time_choice(&motion, &settings, k, &sample_ns[k], &make_ns[k], err);
+  if (status == STIC_OK && stic_cli_signal() == 0)
+    printf("  %-38s %-5s %8.0f %8.0f %8.0f %8.0f %6.2f %6.0f %5.0f\n", c->name,
+           level == STIC_LEVEL_FRAME ? "frame" : "event", sample_ns[STIC_LEAVE_NONE],
+           sample_ns[STIC_LEAVE_ODE], sample_ns[STIC_LEAVE_HIDDEN], sample_ns[STIC_LEAVE_ALL],
+           sample_ns[STIC_LEAVE_NONE] / sample_ns[STIC_LEAVE_ALL], make_ns[STIC_LEAVE_NONE] / 1e3,
+           make_ns[STIC_LEAVE_ALL] / 1e3);
+  stic_motion_free(&motion);
+  return status;
+}
+
+static stic_status bench_parts(bool quick, stic_error *err)
+{
+  static const part_case cases[] = {
+    {"box on two surfaces", BOX, 0, 0, 0.5, 0.3, 0.5},
+    {"64 vertices on two surfaces", 64, 0, 0, 0.5, 0.3, 0.5},
+    {"box, 14 further ones 1 mm behind", BOX, 14, 1e-3, 0.5, 0.3, 0.5},
+    {"box, 254 further ones 0.1 mm behind", BOX, 254, 1e-4, 0.5, 0.3, 0.5},
+    {"box in a bowl of 254 further ones", BOX, 254, 0, 0.5, 0.3, 0.5},
+    {"box, mu_s = mu_d", BOX, 0, 0, 0.5, 0.5, 0.5},
+    {"box, no friction", BOX, 0, 0, 0, 0, 0.5},
+    {"box, k_theta = 0", BOX, 0, 0, 0.5, 0.3, 0},
+  };
+  stic_status status = STIC_OK;
+
+  printf("what is left out, ns a sample (mean), pressed and dragged along each surface; us to make it\n"
+         "  %-44s %8s %8s %8s %8s %6s %6s %5s\n",
+         "", "full", "no ODE", "hidden", "both", "full/", "full", "both");
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
+    for (int level = 0; level < 2 && status == STIC_OK && stic_cli_signal() == 0; level++)
+      status = bench_part(&cases[i], level == 0 ? STIC_LEVEL_FRAME : STIC_LEVEL_EVENT, quick, err);
+  return status;
+}
+
 /* ---- the program ------------------------------------------------------------------------- */
 
 typedef struct workplace {
@@ -377,6 +472,8 @@ int stic_bench_speed(bool quick)
     status = bench_surfaces(quick, 10, "surfaces, further ones out of reach", m, &err);
   if (status == STIC_OK)
     status = bench_vertices(quick, m, &err);
+  if (status == STIC_OK)
+    status = bench_parts(quick, &err);
   if (status == STIC_OK)
     status = bench_program(quick, &err);
   free(m);
