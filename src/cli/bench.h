@@ -2,6 +2,8 @@
 #ifndef STIC_BENCH_H
 #define STIC_BENCH_H
 
+#include "../stiction.h"
+
 #include <stdbool.h>
 
 /* `quick`: few repetitions, for tests. */
@@ -21,6 +23,14 @@ typedef struct stic_bench_devices_options {
 /* What decoding costs, how long a sample takes to its result, and whether any is lost on its way to the recorder:
  * STIC_FAILED if so. */
 int stic_bench_devices(const stic_bench_devices_options *options);
+
+/* How far the same closed forms are met at a precision, nothing printed. */
+typedef struct stic_closed_form_result {
+  int rows, passed;
+  double worst; /* largest error of the exact ones, relative, absolute where 0 is expected */
+} stic_closed_form_result;
+
+stic_status stic_closed_forms(stic_precision precision, stic_closed_form_result *result, stic_error *err);
 
 typedef struct stic_trade_options {
   bool quick;

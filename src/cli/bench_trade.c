@@ -427,6 +427,26 @@ static void keep_panel(bench *b)
   }
 }
 
+/* ---- closed forms ---------------------------------------------------------------------------- */
+
+/* Where the answer is known, the reference's own error is too. */
+static stic_status print_closed_forms(bench *b)
+{
+  static const stic_precision precisions[2] = {STIC_F80, STIC_F64};
+  stic_status status = STIC_OK;
+
+  printf("Where closed forms are known (bench validate), level event errs by at most");
+  for (int p = 0; p < 2 && status == STIC_OK && stic_cli_signal() == 0; p++) {
+    stic_closed_form_result r = {0, 0, 0};
+
+    status = stic_closed_forms(precisions[p], &r, &b->err);
+    printf("%s %.1e with %s (%d of %d within bounds)", p ? "," : "", r.worst,
+           stic_precision_name(precisions[p]), r.passed, r.rows);
+  }
+  printf(".\n");
+  return status;
+}
+
 /* ---- all ------------------------------------------------------------------------------------- */
 
 static void clear(bench *b)
@@ -535,6 +555,9 @@ int stic_bench_trade(const stic_trade_options *options)
       csv_begin(b->csv);
     printf("stiction %s, %s\nA row's cost is its fastest of %d runs, all settings in turn; clock included.\n",
            stic_version(), stic_machine_text(machine, sizeof machine), options->quick ? 2 : 15);
+    status = print_closed_forms(b);
+  }
+  if (status == STIC_OK && stic_cli_signal() == 0) {
     status = options->scene ? trade_file(b, options->scene, options->trace) : trade_tree(b);
   }
   code = finish(b, status);

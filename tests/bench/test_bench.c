@@ -93,6 +93,7 @@ static void trade_tells_and_draws(void **state)
   assert_int_equal(run->code, 0);
   stic_test_contains(run->out, "In words: the knee is at");
   stic_test_contains(run->out, "Recommended for this scene");
+  stic_test_contains(run->out, "with f80 (38 of 38 within bounds)");
   stic_test_contains(run->out, "substep=256");
   assert_true(count_lines(csv) >= 1 + 30 + 5 + 14); /* levels, h_min, starts */
   svg = stic_test_read(stic_test_path("trade.svg"));
