@@ -24,45 +24,41 @@ static const struct {
    true,
    false,
    {0.2, 0.5, 0.8},
-   {{4, 200, 0.05, 1, 0.2, 0.3, 0, 0},
-    {4, 200, 0.05, 1, 0.2, 0.3, 0, 1e-3},
-    {2, 0, 0.1, 1, 0.2, 0.3, 0, 1e-3}}},
+   {{32, 50, 0.05, 1, 0.2, 1, 1, 0}, {32, 50, 0.05, 1, 0.2, 1, 1, 1e-2}, {2, 0, 0.1, 1, 0.8, 0.3, 0, 3e-3}}},
   {&peer_chipmunk,
    "Chipmunk",
    "chipmunk-dev",
    false,
    false,
    {0.1, 0.5, 0.9},
-   {{4, 50, 0.05, 1, 0.1, 0.3, 0, 0},
-    {4, 50, 0.05, 1, 0.1, 0.3, 0, 1e-3},
-    {2, 10, 0.1, 1, 0.1, 0.3, 0, 1e-3}}},
+   {{32, 50, 0.05, 1, 0.1, 1, 1, 0}, {32, 50, 0.05, 1, 0.1, 1, 1, 1e-2}, {2, 10, 0.1, 1, 0.1, 0.3, 0, 1e-2}}},
   {&peer_bullet,
    "Bullet",
    "libbullet-dev",
    false,
    true,
    {0.1, 0.2, 0.8},
-   {{4, 50, 0.05, 10, 0.2, 0.3, 0, 0},
-    {4, 50, 0.05, 10, 0.2, 0.3, 0, 1e-3},
-    {2, 10, 0.1, 10, 0.2, 0.3, 0, 1e-3}}},
+   {{32, 50, 0.05, 10, 0.2, 1, 1, 0},
+    {32, 50, 0.05, 10, 0.2, 1, 1, 1e-2},
+    {2, 10, 0.1, 10, 0.2, 0.3, 0, 1e-2}}},
   {&peer_box2d,
    "Box2D",
    "libbox2d-dev",
    false,
    true,
    {0.2, 0.2, 0.2},
-   {{4, 50, 0.05, 100, 0.2, 0.3, 0, 0},
-    {4, 50, 0.05, 100, 0.2, 0.3, 0, 1e-3},
-    {2, 10, 0.1, 100, 0.2, 0.3, 0, 1e-3}}},
+   {{16, 50, 0.05, 100, 0.2, 1, 1, 0},
+    {16, 50, 0.05, 100, 0.2, 1, 1, 1e-2},
+    {2, 10, 0.1, 100, 0.2, 0.3, 0, 1e-2}}},
   {&peer_mujoco,
    "MuJoCo",
    "mujoco-core",
    true,
    false,
    {0.95, 0.99, 0.999},
-   {{4, 50, 0.05, 1, 0.99, 0.3, 0, 0},
-    {4, 50, 0.05, 1, 0.99, 0.3, 0, 1e-3},
-    {2, 10, 0.1, 1, 0.99, 0.3, 0, 1e-3}}},
+   {{32, 50, 0.05, 1, 0.999, 1, 1, 0},
+    {32, 50, 0.05, 1, 0.999, 1, 1, 1e-2},
+    {2, 10, 0.1, 1, 0.999, 0.3, 0, 1e-2}}},
 };
 
 int peer_field(peer_contestant out[PEER_CONTESTANTS])
@@ -215,15 +211,17 @@ stic_status peer_field_tune(const char *only, const peer_scene scenes[PEER_SCENE
     search s = {.scenes = scenes, .best = INFINITY};
     const peer_tuning *t = &s.who.tuning;
 
-    if (!*entries[entry].engine || strncmp(entries[entry].name, only, strlen(only)) != 0)
+    snprintf(s.who.name, sizeof s.who.name, "%s%s", entries[entry].name, kind_names[kind]);
+    if (!*entries[entry].engine || strncmp(s.who.name, only, strlen(only)) != 0)
       continue;
-    s.who = (peer_contestant){.engine = *entries[entry].engine, .tuning = entries[entry].tuning[kind]};
+    s.who.engine = *entries[entry].engine;
+    s.who.tuning = entries[entry].tuning[kind];
     s.count = choices_of(entry, kind, s.choices);
     status = descend(&s, err);
     if (status == STIC_OK)
-      printf("%s%s: {%d, %d, %g, %g, %g, %g, %g, %g}, typical error %.3g mm\n", entries[entry].name,
-             kind_names[kind], t->steps, t->iterations, t->mass, t->scale, t->firmness, t->damping,
-             t->hand_damping, t->switch_speed, pow(10, s.best) * 1e3);
+      printf("%s: {%d, %d, %g, %g, %g, %g, %g, %g}, typical error %.3g mm\n", s.who.name, t->steps,
+             t->iterations, t->mass, t->scale, t->firmness, t->damping, t->hand_damping, t->switch_speed,
+             pow(10, s.best) * 1e3);
     fflush(stdout);
   }
   return status;
