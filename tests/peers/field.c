@@ -10,7 +10,7 @@
 enum { PLAIN, SWITCHED, CHEAP, KINDS };
 static const char *const kind_names[KINDS] = {"", ", switched mu", ", switched, cheap"};
 
-/* steps, iterations, mass, scale, firmness, damping, hand_damping, switch_speed; found by --tune. */
+/* steps, iterations, mass, scale, firmness, damping, hand_damping, switch_speed. */
 static const struct {
   const peer_engine *const *engine;
   const char *name, *package;
@@ -31,7 +31,7 @@ static const struct {
    false,
    false,
    {0.1, 0.5, 0.9},
-   {{32, 50, 0.05, 1, 0.1, 1, 1, 0}, {32, 50, 0.05, 1, 0.1, 1, 1, 1e-2}, {2, 10, 0.1, 1, 0.1, 0.3, 0, 1e-2}}},
+   {{32, 50, 0.05, 1, 0.1, 1, 1, 0}, {32, 50, 0.05, 1, 0.1, 1, 1, 1e-2}, {2, 10, 0.5, 1, 0.1, 0.6, 0, 1e-2}}},
   {&peer_bullet,
    "Bullet",
    "libbullet-dev",
@@ -40,7 +40,7 @@ static const struct {
    {0.1, 0.2, 0.8},
    {{32, 50, 0.05, 10, 0.2, 1, 1, 0},
     {32, 50, 0.05, 10, 0.2, 1, 1, 1e-2},
-    {2, 10, 0.1, 10, 0.2, 0.3, 0, 1e-2}}},
+    {2, 10, 0.5, 10, 0.8, 0.3, 0, 1e-2}}},
   {&peer_box2d,
    "Box2D",
    "libbox2d-dev",
