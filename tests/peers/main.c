@@ -27,6 +27,12 @@ typedef struct table {
 
 /* ---- measuring --------------------------------------------------------------------------- */
 
+/* Where nothing may move and the first slip is not looked for; one run will do there. */
+static bool rests(const peer_scene *p)
+{
+  return p->rest_row > 0 && !(p->onset > 0);
+}
+
 /* All contestants in turn, then again: what disturbs the machine disturbs all alike. */
 static stic_status measure_scene(table *t, int scene, int repeats, stic_error *err)
 {
@@ -113,14 +119,14 @@ static summary sum_up(const table *t, int who)
   for (int i = 0; i < PEER_SCENES; i++) {
     const peer_score *s = &t->scores[who][i];
 
-    sum.worst = fmax(sum.worst, (double)s->worst_ns);
     if (t->scenes[i].onset > 0)
       sum.onset = s->onset;
-    if (t->scenes[i].rest_row > 0 && !(t->scenes[i].onset > 0)) {
+    if (rests(&t->scenes[i])) {
       sum.creep[holds++] = s->creep;
       continue;
     }
     moving++;
+    sum.worst = fmax(sum.worst, (double)s->worst_ns);
     sum.pose += s->difference.position_rms * s->difference.position_rms;
     sum.force += s->difference.force_rms * s->difference.force_rms;
     sum.median += log((double)s->median_ns);
@@ -162,9 +168,8 @@ static bool stiction_holds(const table *t)
   for (int k = 0; k < 2 * PEER_SCENES; k++) {
     const peer_scene *p = &t->scenes[k % PEER_SCENES];
     const peer_score *s = &t->scores[k / PEER_SCENES][k % PEER_SCENES];
-    const bool holds = p->rest_row > 0 && !(p->onset > 0);
 
-    if (holds && !(s->creep == 0 && s->drift == 0)) {
+    if (rests(p) && !(s->creep == 0 && s->drift == 0)) {
       printf("FAIL: %s creeps on %s by %g m\n", t->who[k / PEER_SCENES].name, p->name, s->drift);
       good = false;
     }
@@ -185,7 +190,7 @@ static stic_status compare(table *t, const char *path, int repeats, stic_error *
 
   t->count = peer_field(t->who);
   for (int i = 0; i < PEER_SCENES && status == STIC_OK && stic_cli_signal() == 0; i++) {
-    status = measure_scene(t, i, repeats, err);
+    status = measure_scene(t, i, rests(&t->scenes[i]) ? 1 : repeats, err);
     if (status == STIC_OK && stic_cli_signal() == 0)
       print_scene(t, i);
   }
@@ -212,7 +217,7 @@ int main(int argc, const char **argv)
   const struct poptOption options[] = {
     {"csv", '\0', POPT_ARG_STRING, &csv, 0, "Write all rows also as CSV", "FILE"},
     {"repeats", '\0', POPT_ARG_INT | POPT_ARGFLAG_SHOW_DEFAULT, &repeats, 0,
-     "Runs of each; a frame counts with its fastest", "N"},
+     "Runs of what moves; a frame counts with its fastest", "N"},
     {"hold", '\0', POPT_ARG_DOUBLE | POPT_ARGFLAG_SHOW_DEFAULT, &hold, 0,
      "How long the still scenes hold; at least 10", "S"},
     {"tune", '\0', POPT_ARG_STRING, &tune, 0, "Search settings of engines whose name begins so, instead",
