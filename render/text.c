@@ -7,6 +7,18 @@
 
 #include "font_data.h"
 
+/* What its user pointer points at learns that memory was lacking: the library itself would leave signs out. */
+static void *take_memory(size_t size, bool *lacking)
+{
+  void *memory = malloc(size);
+
+  if (!memory && lacking)
+    *lacking = true;
+  return memory;
+}
+
+#define STBTT_malloc(size, user) take_memory(size, user)
+#define STBTT_free(memory, user) ((void)(user), free(memory))
 #define STBTT_STATIC
 #define STB_TRUETYPE_IMPLEMENTATION
 #ifdef __GNUC__
@@ -31,7 +43,7 @@ enum {
 typedef struct glyph {
   int left, top, width, height; /* px of the bitmap; left and top from the pen */
   double advance;               /* px */
-  uint8_t *coverage;            /* width * height; owned by stb's allocator, which is malloc */
+  uint8_t *coverage;            /* width * height; owned */
 } glyph;
 
 struct stic_font {
@@ -44,12 +56,14 @@ stic_font *stic_font_create(bool bold, double pixels)
   stbtt_fontinfo info;
   stic_font *font = calloc(1, sizeof *font);
   int ascent, descent, gap;
+  bool lacking = false;
   float scale;
 
   if (!font || !stbtt_InitFont(&info, bold ? stic_font_sans_bold : stic_font_sans, 0)) {
     free(font);
     return NULL;
   }
+  info.userdata = &lacking;
   scale = stbtt_ScaleForPixelHeight(&info, (float)pixels);
   stbtt_GetFontVMetrics(&info, &ascent, &descent, &gap);
   font->ascent = (int)ceilf((float)ascent * scale);
@@ -62,6 +76,10 @@ stic_font *stic_font_create(bool bold, double pixels)
     g->advance = advance * scale;
     g->coverage =
       stbtt_GetCodepointBitmap(&info, scale, scale, code, &g->width, &g->height, &g->left, &g->top);
+  }
+  if (lacking) {
+    stic_font_destroy(font);
+    font = NULL;
   }
   return font;
 }

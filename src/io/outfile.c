@@ -103,8 +103,11 @@ static int open_place(stic_outfile *out)
 
 static stic_status cannot_write(const char *path, int problem, stic_error *err)
 {
-  return stic_error_set(err, STIC_CANNOT_WRITE, strcmp(path, "-") == 0 ? "standard output" : path, 0,
-                        "cannot write: %s", strerror(problem));
+  const char *name = strcmp(path, "-") == 0 ? "standard output" : path;
+
+  if (problem == ENOMEM)
+    return stic_error_set(err, STIC_NO_MEMORY, name, 0, "out of memory");
+  return stic_error_set(err, STIC_CANNOT_WRITE, name, 0, "cannot write: %s", strerror(problem));
 }
 
 stic_status stic_outfile_open(const char *path, stic_outfile **out_file, stic_error *err)
