@@ -3,6 +3,7 @@
 #include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -134,21 +135,31 @@ static stic_status prepare_folder(stic_movie *m, stic_error *err)
 static stic_status keep_folder(stic_movie *m, stic_error *err)
 {
   const stic_status status = refuse_older(m, err);
+  int64_t moved = 0;
+  int from, to;
+  char name[STIC_PNG_NAME_MAX];
 
   if (status != STIC_OK)
     return status;
+  from = open(m->draft, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  to = open(m->folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   pictures_in(m->folder, true);
-  for (int64_t i = 0; i < m->count; i++) {
-    char *from = stic_png_sequence_path(m->draft, i), *to = stic_png_sequence_path(m->folder, i);
-    bool moved = from && to && rename(from, to) == 0;
-
-    free(from);
-    free(to);
-    if (!moved)
-      return refused(m->folder, "cannot write into the folder", err);
+  while (from >= 0 && to >= 0 && moved < m->count) {
+    stic_png_sequence_name(moved, name);
+    if (renameat(from, name, to, name) != 0)
+      break;
+    moved++;
   }
-  m->folder_made = false;
-  return STIC_OK;
+  if (moved < m->count) {
+    refused(m->folder, "cannot write into the folder", err);
+    pictures_in(m->folder, true);
+  }
+  if (from >= 0)
+    close(from);
+  if (to >= 0)
+    close(to);
+  m->folder_made &= moved < m->count;
+  return moved < m->count ? STIC_CANNOT_WRITE : STIC_OK;
 }
 
 static void drop_folder(stic_movie *m)

@@ -14,13 +14,20 @@
 /* Pictures that wait per worker: enough to even out, few enough to bound memory. */
 #define QUEUE_PER_WORKER 2
 
-char *stic_png_sequence_path(const char *folder, int64_t index)
+void stic_png_sequence_name(int64_t index, char name[STIC_PNG_NAME_MAX])
 {
-  size_t room = strlen(folder) + 40;
-  char *path = malloc(room);
+  snprintf(name, STIC_PNG_NAME_MAX, "frame_%06lld.png", (long long)index);
+}
 
+/* NULL without memory. */
+static char *sequence_path(const char *folder, int64_t index)
+{
+  size_t room = strlen(folder) + 1 + STIC_PNG_NAME_MAX;
+  char *path = malloc(room), name[STIC_PNG_NAME_MAX];
+
+  stic_png_sequence_name(index, name);
   if (path)
-    snprintf(path, room, "%s/frame_%06lld.png", folder, (long long)index);
+    snprintf(path, room, "%s/%s", folder, name);
   return path;
 }
 
@@ -111,7 +118,7 @@ struct stic_png_writer {
 static void write_slot(stic_png_writer *w, stic_png_encoder *encoder, const slot *s, stic_error *err)
 {
   stic_image image = {w->width, w->height, s->pixels};
-  char *path = stic_png_sequence_path(w->folder, s->index);
+  char *path = sequence_path(w->folder, s->index);
   int problem = path ? write_file(path, encoder, &image, true) : ENOMEM;
 
   err->status = STIC_OK;

@@ -30,7 +30,8 @@ stic_status stic_png_writer_finish(stic_png_writer *writer, stic_error *err);
 /* Drops what is still queued and ends the threads. NULL allowed. */
 void stic_png_writer_destroy(stic_png_writer *writer);
 
-/* The name of a picture of a sequence, "FOLDER/frame_000000.png"; NULL without memory, else to be freed. */
-char *stic_png_sequence_path(const char *folder, int64_t index);
+/* The name of a picture of a sequence in its folder, "frame_000000.png". */
+#define STIC_PNG_NAME_MAX 40
+void stic_png_sequence_name(int64_t index, char name[STIC_PNG_NAME_MAX]);
 
 #endif

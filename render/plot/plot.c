@@ -160,7 +160,9 @@ static stic_status copy_file(const char *from, const char *to, bool is_pdf, stic
     rewind(file);
     bytes = malloc(size);
   }
-  if (!bytes || fread(bytes, 1, size, file) != size)
+  if (size > 0 && !bytes)
+    status = stic_error_set(err, STIC_NO_MEMORY, to, 0, "out of memory");
+  else if (!bytes || fread(bytes, 1, size, file) != size)
     status = stic_error_set(err, STIC_CANNOT_WRITE, to, 0, "gnuplot made no picture");
   if (file)
     fclose(file);

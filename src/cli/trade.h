@@ -35,6 +35,7 @@ typedef struct stic_outcome {
   int count; /* of rows */
   stic_outcome_row *rows;
   int64_t *least_ns; /* per row: the fastest of all runs */
+  int64_t *sorted;   /* room to sort them */
   int64_t worst_ns;  /* the slowest row of all runs */
   int slip_count, slip_room;
   double *slip_times; /* s */
@@ -46,7 +47,7 @@ typedef struct stic_outcome {
 } stic_outcome;
 
 /* Solves every stride-th sample. A second run into the same outcome adds its times; it must give the same hash
- * (else STIC_FAILED). `stride` 1 times the steps. */
+ * (else STIC_FAILED). `stride` 1 times the steps. After an error the outcome is empty. */
 stic_status stic_outcome_run(stic_outcome *outcome, const stic_motion *motion, const stic_settings *settings,
                              int stride, stic_error *err);
 void stic_outcome_free(stic_outcome *outcome);

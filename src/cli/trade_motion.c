@@ -288,6 +288,7 @@ void stic_outcome_free(stic_outcome *o)
 {
   free(o->rows);
   free(o->least_ns);
+  free(o->sorted);
   free(o->slip_times);
   memset(o, 0, sizeof *o);
 }
@@ -378,7 +379,8 @@ static stic_status make_room(stic_outcome *o, int count, stic_error *err)
   o->count = count;
   o->rows = malloc((size_t)count * sizeof *o->rows);
   o->least_ns = malloc((size_t)count * sizeof *o->least_ns);
-  if (!o->rows || !o->least_ns) {
+  o->sorted = malloc((size_t)count * sizeof *o->sorted);
+  if (!o->rows || !o->least_ns || !o->sorted) {
     stic_outcome_free(o);
     return no_memory(err);
   }
@@ -407,14 +409,18 @@ stic_status stic_outcome_run(stic_outcome *o, const stic_motion *motion, const s
     status = keep_row(o, &r, i, &result, err);
   }
   stic_sim_destroy(r.sim);
-  if (status == STIC_OK && o->hash != 0 && r.hash != o->hash && stic_cli_signal() == 0)
+  if (status != STIC_OK) {
+    stic_outcome_free(o);
+    return status;
+  }
+  if (o->hash != 0 && r.hash != o->hash && stic_cli_signal() == 0)
     return stic_error_set(err, STIC_FAILED, NULL, 0,
                           "bench: two runs of '%s' differ, hash %016llx and %016llx", motion->name,
                           (unsigned long long)o->hash, (unsigned long long)r.hash);
   o->hash = r.hash;
   o->contacts = r.contacts;
   o->events = r.events;
-  return status;
+  return STIC_OK;
 }
 
 static int compare_ns(const void *a, const void *b)
@@ -426,15 +432,9 @@ static int compare_ns(const void *a, const void *b)
 
 int64_t stic_outcome_cost(const stic_outcome *o, double part)
 {
-  int64_t *sorted = malloc((size_t)o->count * sizeof *sorted), cost = 0;
-
-  if (!sorted)
-    return 0;
-  memcpy(sorted, o->least_ns, (size_t)o->count * sizeof *sorted);
-  qsort(sorted, (size_t)o->count, sizeof *sorted, compare_ns);
-  cost = sorted[(int)fmin(o->count - 1, fmax(0, ceil(part * o->count) - 1))];
-  free(sorted);
-  return cost;
+  memcpy(o->sorted, o->least_ns, (size_t)o->count * sizeof *o->sorted);
+  qsort(o->sorted, (size_t)o->count, sizeof *o->sorted, compare_ns);
+  return o->sorted[(int)fmin(o->count - 1, fmax(0, ceil(part * o->count) - 1))];
 }
 
 /* ---- differences ------------------------------------------------------------------------- */
