@@ -63,7 +63,8 @@ static void tell(reading *r, bool warning, stic_status status, int64_t line, con
   if (r->override) {
     char value[64];
 
-    stic_error_set(&problem, STIC_USAGE, NULL, 0, "--set %.100s=%s: %.340s", r->override->key,
+    stic_error_set(&problem, status == STIC_NO_MEMORY ? status : STIC_USAGE, NULL, 0,
+                   "--set %.100s=%s: %.340s", r->override->key,
                    stic_error_quote(r->override->value, strlen(r->override->value), value, sizeof value),
                    message);
   } else {

@@ -100,11 +100,17 @@ static int64_t line_at(const char *text, size_t offset)
   return line;
 }
 
+/* The library does not always say so. */
+static bool lacks_memory(const yaml_parser_t *parser)
+{
+  return parser->error == YAML_MEMORY_ERROR || parser->error == YAML_NO_ERROR;
+}
+
 static void syntax_error(const stic_yaml *y)
 {
   const yaml_parser_t *parser = &y->parser;
 
-  if (parser->error == YAML_MEMORY_ERROR) {
+  if (lacks_memory(parser)) {
     tell(y, STIC_NO_MEMORY, 0, "out of memory");
   } else if (parser->error == YAML_READER_ERROR) {
     const size_t at = parser->problem_offset < y->length ? parser->problem_offset : y->length;
@@ -169,6 +175,10 @@ static bool has_only_plain_features(stic_yaml *y)
     else
       good = true;
     yaml_token_delete(&token);
+  }
+  if (good && more && lacks_memory(&y->parser)) { /* what was not looked at may hold them */
+    syntax_error(y);
+    good = false;
   }
   yaml_parser_delete(&y->parser);
   return good;
