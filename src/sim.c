@@ -242,6 +242,11 @@ const stic_event *stic_sim_events(const stic_sim *sim, int *count)
   return sim->events;
 }
 
+const stic_core_report *stic_sim_report(const stic_sim *sim)
+{
+  return &sim->report;
+}
+
 void stic_sim_time_stages(stic_sim *sim, bool on)
 {
   sim->timed = on;

@@ -1,4 +1,4 @@
-/* Inside of the simulation: which parts of the model it leaves out because its scene cannot need them. Results are
+/* Inside of the simulation: what its last step took, and which parts of the model it leaves out because its scene cannot need them. Results are
  * the same to the last bit (`iterations` counts what was done); tests prove it and `stiction bench speed` shows what
  * each part costs.
  *
@@ -8,7 +8,7 @@
 #ifndef STIC_SIM_H
 #define STIC_SIM_H
 
-#include "stiction.h"
+#include "statics/core.h"
 
 /* Parts to leave out, where the scene allows it. */
 enum {
@@ -21,5 +21,8 @@ enum {
 /* As stic_sim_create(), with a choice of what is left out. Real-time: no. */
 stic_status stic_sim_create_parts(const stic_scene *scene, const stic_settings *settings, unsigned leave_out,
                                   stic_sim **sim, stic_error *err);
+
+/* Of the last step; valid until the next one. Real-time: yes. */
+const stic_core_report *stic_sim_report(const stic_sim *sim);
 
 #endif

@@ -5,6 +5,7 @@
 #include "../stiction.h"
 
 #include <stdbool.h>
+#include <stdint.h>
 
 /* `quick`: few repetitions, for tests. */
 int stic_bench_speed(bool quick);
@@ -42,5 +43,19 @@ typedef struct stic_trade_options {
 
 /* What accuracy costs and what it buys. */
 int stic_bench_trade(const stic_trade_options *options);
+
+typedef struct stic_extremes_options {
+  bool quick, long_form;     /* long_form: frames of standing still by millions, eight hours at 250 Hz */
+  int64_t random;            /* random frames in all precisions together, 0: none and all sweeps instead */
+  uint64_t seed;             /* of the random cases */
+  int64_t number;            /* only this case of the sweep or seed; -1: all */
+  const char *sweep;         /* only this one; NULL: all */
+  const char *dump;          /* folder for the case's scene and trace; NULL: none */
+  const char *csv, *picture; /* NULL: none */
+  const char *scene, *trace; /* both NULL; else only these are held against the invariants */
+} stic_extremes_options;
+
+/* The model's invariants at the ends of every range. */
+int stic_bench_extremes(const stic_extremes_options *options);
 
 #endif

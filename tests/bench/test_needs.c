@@ -6,9 +6,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "invariants/random_scene.h"
+#include "invariants/wild.h"
 #include "needs.h"
-#include "random_scene.h"
-#include "wild.h"
 
 #define SAMPLES 120
 

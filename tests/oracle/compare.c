@@ -15,7 +15,7 @@
 
 #include "inside.h"
 #include "oracle.h"
-#include "random_scene.h"
+#include "invariants/random_scene.h"
 #include "statics/core.h"
 
 inside inside_report;

@@ -2,13 +2,15 @@
  *   invariants rows|scale|mirror|turn|regrip [--seed S] [--count N] [--frames N] [--level L] [--precision P]
  *              [--break WHAT] [--verbose]
  * Without --level or --precision all of them. A failure prints the seed, the row, and the line that replays it. */
+#include <float.h>
 #include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "inside.h"
 #include "statics/core.h"
-#include "invariants_check.h"
-#include "wild.h"
+#include "invariants/checker.h"
+#include "invariants/wild.h"
 
 inside inside_report;
 
@@ -95,12 +97,12 @@ static void break_row(const char *how, double size, double ulp, stic_result *r)
 static void check_rows(const options *o, uint64_t seed, int level, int precision)
 {
   wild_case c;
-  checker k;
+  stic_checker k;
   wild_init(&c, seed);
   stic_sim *sim = open_sim(&c.scene, level, precision, seed);
   if (!sim)
     return;
-  checker_init(&k, &c.scene, PRECISIONS[precision]);
+  stic_checker_init(&k, &c.scene, PRECISIONS[precision]);
   stic_result r;
   memset(&r, 0, sizeof r);
   total.cases++;
@@ -115,7 +117,8 @@ static void check_rows(const options *o, uint64_t seed, int level, int precision
     break_row(o->broken, k.size, k.ulp, &seen);
     int count;
     const stic_event *events = stic_sim_events(sim, &count);
-    check_row(&k, &seen, events, count, (inside_report.row_decisions & ~(unsigned)STIC_DECISION_REST) != 0);
+    stic_checker_row(&k, &seen, events, count,
+                     (inside_report.row_decisions & ~(unsigned)STIC_DECISION_REST) != 0);
     if (inside_report.worst_rise > 1 && inside_report.worst_rise > rise && !k.complaint[0])
       snprintf(k.complaint, sizeof k.complaint, "5: HOLD raises the energy, %.3g times what rounding allows",
                inside_report.worst_rise);
@@ -175,7 +178,7 @@ static const char *scaled_difference(const stic_result *a, const stic_result *b,
     SAME(p->y, q->y, m);
     SAME(p->normal, q->normal, n);
     SAME(p->friction, q->friction, n);
-    if (!same_contact(p, q))
+    if (!stic_same_contact(p, q))
       return "contacts";
   }
   return different;
@@ -379,10 +382,10 @@ static void check_regrip(const options *o, uint64_t seed, int level, int precisi
         sample.position[0] += 1e-3 * c.size;
       stic_sim_step(sim, &sample, &after);
       total.rows++, total.contacts += after.contact_count;
-      checker q;
-      checker_init(&q, &c.scene, PRECISIONS[precision]);
+      stic_checker q;
+      stic_checker_init(&q, &c.scene, PRECISIONS[precision]);
       double off = hypot(after.x - before.x, after.y - before.y) + c.size * fabs(after.theta - before.theta);
-      double eps = 4096 * q.ulp * c.size + coordinate_rounding(&q, &after);
+      double eps = 4096 * q.ulp * c.size + stic_checker_rounding(&q, &after);
       if (k < 2 && (after.x != before.x || after.y != before.y || after.theta != before.theta))
         wrong = "moved when let go";
       if (off > eps)
@@ -390,14 +393,14 @@ static void check_regrip(const options *o, uint64_t seed, int level, int precisi
       if (k < 2 && after.state != STIC_RELEASED)
         wrong = "not let go";
       /* Where the spring's slack is known to 1e-12 size, contacts stay too. */
-      double pull = coordinate_rounding(&q, &after) * largest_of(1, q.ulp / DBL_EPSILON);
-      pull += 4 * largest_of(q.ulp, DBL_EPSILON) * (fabs(after.theta) + fabs(after.hand_theta)) *
+      double pull = stic_checker_rounding(&q, &after) * fmax(1, q.ulp / DBL_EPSILON);
+      pull += 4 * fmax(q.ulp, DBL_EPSILON) * (fabs(after.theta) + fabs(after.hand_theta)) *
               c.scene.rotational_stiffness / c.scene.stiffness / c.size;
       pull *= 1 + hypot(after.hand_x - after.x, after.hand_y - after.y) / c.size; /* a long arm turns it */
       if (after.contact_count != before.contact_count && pull <= 1e-13 * c.size)
         wrong = "contacts changed";
       for (int n = 0; pull <= 1e-13 * c.size && n < after.contact_count && !wrong; n++)
-        if (!same_contact(&after.contacts[n], &before.contacts[n]) ||
+        if (!stic_same_contact(&after.contacts[n], &before.contacts[n]) ||
             after.contacts[n].x != before.contacts[n].x || after.contacts[n].y != before.contacts[n].y)
           wrong = "an anchor moved";
       if (after.slips != before.slips && pull <= 1e-13 * c.size)

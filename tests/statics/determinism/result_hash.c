@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "random_scene.h"
+#include "invariants/random_scene.h"
 
 static uint64_t hash = UINT64_C(14695981039346656037); /* FNV-1a */
 

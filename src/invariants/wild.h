@@ -1,8 +1,8 @@
 /* Scenes and hand paths that look for trouble: acute wedges, slots, many surfaces, up to 64 vertices, no, equal and
  * huge friction, no and huge rotational stiffness, far from the origin, very small and very large; hands that jump,
  * creep, stand still, come back, and stop exactly on an anchor or on a friction limit. A seed names a case. */
-#ifndef STICTION_TESTS_WILD_H
-#define STICTION_TESTS_WILD_H
+#ifndef STIC_WILD_H
+#define STIC_WILD_H
 
 #include "random_scene.h"
 

@@ -1,28 +1,11 @@
-/* The invariants of the model that a row can be held against. */
-#ifndef STICTION_TESTS_INVARIANTS_CHECK_H
-#define STICTION_TESTS_INVARIANTS_CHECK_H
+#include "checker.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "stiction.h"
-
-/* What a checker knows between rows. */
-typedef struct checker {
-  const stic_scene *scene;
-  double ulp; /* of the precision used, relative */
-  double size;
-  bool first;
-  stic_result last;
-  char complaint[512]; /* "" while all is well */
-  /* largest values seen, in units of what is allowed */
-  double worst_depth, worst_residual, worst_anchor;
-  long rows, contacts, flagged, tiny_slides;
-} checker;
-
-static inline void checker_init(checker *k, const stic_scene *scene, stic_precision precision)
+void stic_checker_init(stic_checker *k, const stic_scene *scene, stic_precision precision)
 {
   memset(k, 0, sizeof *k);
   k->scene = scene;
@@ -37,14 +20,12 @@ static inline void checker_init(checker *k, const stic_scene *scene, stic_precis
       snprintf(k->complaint, sizeof k->complaint, __VA_ARGS__);                                              \
   } while (0)
 
-static inline double largest_of(double a, double b)
+static double largest_of(double a, double b)
 {
   return a > b ? a : b;
 }
 
-/* Rounding of the coordinates: 4 ulp of the largest (a row is in double, whatever it was computed in). The angle
- * rounds too, and moves a vertex by size times that. */
-static inline double coordinate_rounding(const checker *k, const stic_result *r)
+double stic_checker_rounding(const stic_checker *k, const stic_result *r)
 {
   double ulp = largest_of(k->ulp, DBL_EPSILON),
          far = fabs(r->x) + fabs(r->y) + k->size * (1 + fabs(r->theta));
@@ -54,17 +35,16 @@ static inline double coordinate_rounding(const checker *k, const stic_result *r)
   return 4 * ulp * far;
 }
 
-static inline bool same_contact(const stic_contact *a, const stic_contact *b)
+bool stic_same_contact(const stic_contact *a, const stic_contact *b)
 {
   return a->vertex == b->vertex && a->surface == b->surface;
 }
 
-/* may_slide: JUDGE chose a slide in this row. */
-static inline void check_row(checker *k, const stic_result *r, const stic_event *events, int event_count,
-                             bool may_slide)
+void stic_checker_row(stic_checker *k, const stic_result *r, const stic_event *events, int event_count,
+                      bool may_slide)
 {
   const stic_scene *s = k->scene;
-  double c = cos(r->theta), si = sin(r->theta), k_p = s->stiffness, rounding = coordinate_rounding(k, r);
+  double c = cos(r->theta), si = sin(r->theta), k_p = s->stiffness, rounding = stic_checker_rounding(k, r);
   double eps = 4096 * k->ulp * k->size + rounding;
   k->rows++;
   if (r->flags & (STIC_FLAG_NO_ANSWER | STIC_FLAG_LIMIT))
@@ -143,6 +123,8 @@ static inline void check_row(checker *k, const stic_result *r, const stic_event 
       allowed + largest * rounding / k->size + s->rotational_stiffness * angle / k->size;
     if (r->state == STIC_FREE && s->rotational_stiffness == 0)
       off_moment = 0;
+    k->worst_relative_residual =
+      largest_of(k->worst_relative_residual, largest_of(off, off_moment) / largest);
     k->worst_residual = largest_of(k->worst_residual, largest_of(off / allowed, off_moment / allowed_moment));
     if (!(off <= allowed))
       COMPLAIN("2: force residual %.3g, allowed %.3g (largest %.3g)", off, allowed, largest);
@@ -157,7 +139,7 @@ static inline void check_row(checker *k, const stic_result *r, const stic_event 
       const stic_contact *now = &r->contacts[i], *then = &k->last.contacts[j];
       const stic_friction *f = &s->surfaces[now->surface].friction;
       bool moved = now->x != then->x || now->y != then->y, said = false;
-      if (!same_contact(now, then) || !moved)
+      if (!stic_same_contact(now, then) || !moved)
         continue;
       for (int n = 0; n < event_count && !said; n++)
         said = events[n].vertex == now->vertex && events[n].kind != STIC_EVENT_SNAP;
@@ -194,5 +176,3 @@ static inline void check_row(checker *k, const stic_result *r, const stic_event 
   k->last = *r;
   k->first = false;
 }
-
-#endif

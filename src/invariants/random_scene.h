@@ -1,13 +1,13 @@
-/* Random scenes and hand paths for tests: boxes and polygons among floors, walls, slopes, corners and
+/* Random scenes and hand paths for tests and benches: boxes and polygons among floors, walls, slopes, corners and
  * slots, hands that press, drag, turn, jump and come back. The same seed gives the same case everywhere. */
-#ifndef STICTION_TESTS_RANDOM_SCENE_H
-#define STICTION_TESTS_RANDOM_SCENE_H
+#ifndef STIC_RANDOM_SCENE_H
+#define STIC_RANDOM_SCENE_H
 
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
 
-#include "stiction.h"
+#include "../stiction.h"
 
 typedef struct rng {
   uint64_t state;
