@@ -101,6 +101,8 @@ typedef struct bench {
   tally total[PRECISIONS];
   stic_heat_map maps[2 * PRECISIONS];
   int failures_shown;
+  bool dumped; /* a failing case */
+  stic_status status;
 } bench;
 
 typedef struct lane {
@@ -110,10 +112,14 @@ typedef struct lane {
   tally t;
 } lane;
 
-static stic_sample sample_of(const stic_extreme *e, int i)
+/* The hand of row i; `last` is the f64 row before it. */
+static stic_sample sample_of(stic_extreme *e, int i, const stic_result *last)
 {
   stic_sample s;
 
+  if (e->given)
+    return e->given[i];
+  e->move(e, i, i > 0 ? last : NULL);
   memset(&s, 0, sizeof s);
   s.t_ns = (int64_t)i * SAMPLE_NS;
   s.position[0] = e->x, s.position[1] = e->y;
@@ -265,6 +271,101 @@ static void judge_refusal(bench *b, lane *l, const stic_extreme *e, bool made)
   }
 }
 
+/* ---- a failing case, made small ------------------------------------------------------------- */
+
+typedef struct failing {
+  stic_extreme e;
+  stic_sample *samples;
+  int count, precision, level;
+} failing;
+
+/* The first row that breaks an invariant, -1 if none does. */
+static int first_failure(bench *b, const failing *f)
+{
+  static lane l;
+  int at = -1;
+
+  if (!open_lane(b, &l, &f->e, f->precision, f->level))
+    return -1;
+  for (int i = 0; i < f->count && at < 0; i++) {
+    step_lane(&l, &f->samples[i], f->level, false);
+    if (l.checker.complaint[0])
+      at = i;
+  }
+  stic_sim_destroy(l.sim);
+  return at;
+}
+
+/* Leaves out samples, in ever shorter runs, as long as a row still fails. */
+static void drop_samples(bench *b, failing *f, stic_sample *kept)
+{
+  for (int length = f->count / 2; length >= 1; length /= 2)
+    for (int from = f->count - length - 1; from >= 0; from -= length) {
+      const int count = f->count;
+
+      memcpy(kept, f->samples, (size_t)count * sizeof *kept);
+      memmove(f->samples + from, f->samples + from + length,
+              (size_t)(count - from - length) * sizeof *kept);
+      f->count = count - length;
+      const int at = first_failure(b, f);
+
+      if (at >= 0) {
+        f->count = at + 1;
+        from = from < f->count ? from : f->count;
+      } else {
+        memcpy(f->samples, kept, (size_t)count * sizeof *kept);
+        f->count = count;
+      }
+    }
+}
+
+static void drop_surfaces(bench *b, failing *f)
+{
+  stic_scene *s = &f->e.scene;
+
+  for (int i = s->surface_count - 1; i >= 0 && s->surface_count > 1; i--) {
+    const stic_scene before = *s;
+
+    memmove(&s->surfaces[i], &s->surfaces[i + 1], (size_t)(s->surface_count - i - 1) * sizeof s->surfaces[0]);
+    s->surface_count--;
+    if (first_failure(b, f) < 0)
+      *s = before;
+  }
+}
+
+/* A standing hand breaks nothing that a first failure shows. */
+static void minimise(bench *b, failing *f)
+{
+  stic_sample *kept = malloc((size_t)f->count * sizeof *kept);
+  const int at = first_failure(b, f);
+
+  if (kept && at >= 0 && at < 5000) {
+    f->count = at + 1;
+    drop_surfaces(b, f);
+    drop_samples(b, f, kept);
+  }
+  free(kept);
+}
+
+/* The case at hand as files; if it fails, as small as it still does. */
+static void dump(bench *b, const stic_extreme *e, int precision, int level)
+{
+  static failing f;
+
+  if (!b->options->dump || b->dumped || b->status != STIC_OK)
+    return;
+  f = (failing){.e = *e, .samples = b->samples, .count = b->sample_count, .precision = precision, .level = level};
+  if (precision >= 0) {
+    minimise(b, &f);
+    b->dumped = true;
+  }
+  b->status = stic_extreme_dump(b->options->dump, &f.e.scene, f.samples, f.count, &b->err);
+  if (b->status == STIC_OK)
+    printf("  stiction replay %s/scene.yaml %s/hand.csv --accuracy %s --precision %s --log log.csv\n",
+           b->options->dump, b->options->dump, level_names[level],
+           stic_precision_name(precisions[precision >= 0 ? precision : 1]));
+}
+
 static void run_case(bench *b, const stic_extreme *start, const label *name, int level)
 {
   static lane lanes[PRECISIONS]; /* rows with all their contacts are large */
@@ -278,8 +379,7 @@ static void run_case(bench *b, const stic_extreme *start, const label *name, int
     judge_refusal(b, &lanes[p], &e, made[p]);
   }
   for (int i = 0; i < e.frames && made[0] && stic_cli_signal() == 0; i++) {
-    e.move(&e, i, i > 0 ? &lanes[1].row : NULL);
-    const stic_sample sample = sample_of(&e, i);
+    const stic_sample sample = sample_of(&e, i, &lanes[1].row);
 
     remember(b, &sample);
     for (int p = 0; p < PRECISIONS; p++) {
@@ -293,6 +393,11 @@ static void run_case(bench *b, const stic_extreme *start, const label *name, int
   }
   for (int p = 0; p < PRECISIONS; p++)
     close_lane(b, &lanes[p], &e, name, p, level, failed_at[p]);
+  int worst = PRECISIONS - 1;
+
+  while (worst >= 0 && !lanes[worst].checker.complaint[0])
+    worst--;
+  dump(b, &e, worst, level);
 }
 
 /* ---- heat maps ------------------------------------------------------------------------------- */
@@ -464,6 +569,26 @@ static void run_random(bench *b)
   end_sweep(b, "random");
 }
 
+/* ---- a scene and a trace --------------------------------------------------------------------------- */
+
+static stic_status run_files(bench *b)
+{
+  const label name = {.sweep = "files", .replay = ""};
+  static stic_extreme e;
+  stic_motion motion;
+  const stic_status status = stic_motion_read(&motion, b->options->scene, b->options->trace, NULL, 0, &b->err);
+
+  if (status != STIC_OK)
+    return status;
+  e = (stic_extreme){.scene = motion.scene, .frames = motion.count, .given = motion.samples};
+  print_head();
+  for (int level = 0; level < LEVELS; level++)
+    run_case(b, &e, &name, level);
+  end_sweep(b, name.sweep);
+  stic_motion_free(&motion);
+  return STIC_OK;
+}
+
 /* ---- the program ------------------------------------------------------------------------------------ */
 
 static stic_status run(bench *b)
@@ -471,11 +596,13 @@ static stic_status run(bench *b)
   const stic_extremes_options *o = b->options;
   stic_status status = STIC_OK;
 
-  if (o->random > 0)
+  if (o->scene)
+    status = run_files(b);
+  else if (o->random > 0)
     run_random(b);
   else
     status = run_sweeps(b);
-  return status;
+  return status != STIC_OK ? status : b->status;
 }
 
 static stic_status write_picture(bench *b)

@@ -29,7 +29,8 @@ struct stic_extreme {
   /* the hand */
   double x, y, phi;
   uint32_t buttons;
-  wild_case wild; /* of a random case */
+  wild_case wild;           /* of a random case */
+  const stic_sample *given; /* the hand as a trace has it, instead of `move`; NULL: none */
 };
 
 typedef struct stic_sweep {

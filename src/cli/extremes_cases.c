@@ -158,15 +158,11 @@ static bool shape(stic_extreme *e, int index, int frames)
   const double aspect = pow(10, index % ASPECTS);
 
   (void)frames;
-  corner_case(e, pow(10, fmin(i, 18) - 9) * 1.2, 0, 0);
+  corner_case(e, pow(10, fmin(i, 18) - 9) * 1.26, 0, 0);
   stic_scene_set_box(&e->scene, 2 * HALF_WIDTH * e->unit, 2 * HALF_WIDTH * e->unit / aspect);
   e->a = stic_scene_size(&e->scene);
   e->b = aspect;
-  if (e->a > 1e9) {
-    corner_case(e, 1e9, 0, 0);
-    stic_scene_set_box(&e->scene, 2 * HALF_WIDTH * e->unit, 2 * HALF_WIDTH * e->unit / aspect);
-  }
-  return i <= 18;
+  return i < 18;
 }
 
 /* Regular; one corner that hardly stands out; two vertices that are hardly apart. */
@@ -188,7 +184,7 @@ static bool polygon(stic_extreme *e, int index, int frames)
     v[i][1] = HALF_WIDTH * sin(2 * PI * i / n - 2.0);
   }
   if (kind == 1 && n > 3) {
-    const double x = v[2][0] - v[0][0], y = v[2][1] - v[0][1], out = 4e-9;
+    const double x = v[2][0] - v[0][0], y = v[2][1] - v[0][1], out = 2e-8;
 
     v[1][0] = (v[0][0] + v[2][0]) / 2 + out * y;
     v[1][1] = (v[0][1] + v[2][1]) / 2 - out * x;
@@ -206,13 +202,14 @@ static bool distance(stic_extreme *e, int index, int frames)
 {
   enum { DISTANCES = 14 };
   const int i = index / DISTANCES, far = index % DISTANCES;
-  const double unit = pow(10, fmin(i, 12) * 1.5 - 9), way = far == 0 ? 0 : unit * pow(10, far - 1);
+  const double unit = 1.2 * pow(10, fmin(i, 11) * 1.5 - 9), way = far == 0 ? 0 : unit * pow(10, far - 1);
 
   (void)frames;
   corner_case(e, unit, 0.8 * way, 0.6 * way);
   e->a = unit;
   e->b = way / unit;
-  return i <= 12;
+  e->must_refuse = 0.8 * way > 9.99e14; /* the scene format's range */
+  return i <= 11;
 }
 
 /* ---- surfaces ---------------------------------------------------------------------------------------- */
@@ -245,7 +242,7 @@ static bool surfaces(stic_extreme *e, int index, int frames)
   if (kind == 0) {
     add_surface(e, 1.2, 0, 90 + degrees);
   } else if (kind == 3) {
-    add_surface(e, 0, 0, -degrees);
+    add_surface(e, 0, 0, degrees);
     start_at(e, HALF_WIDTH, HALF_HEIGHT);
   } else {
     const double wider = kind == 1 ? 1.1 : kind == 2 ? 1 + 1e-7 + 4 * angle : 1 - fmax(angle, 1e-9);
@@ -254,7 +251,7 @@ static bool surfaces(stic_extreme *e, int index, int frames)
     e->parameter = 2 * HALF_HEIGHT * wider;
     add_surface(e, 1.2, e->parameter, 270 + degrees);
     start_at(e, 1.2, e->parameter / 2);
-    e->must_refuse = kind == 4 || (kind == 1 && angle > 0.09) || (kind == 2 && angle > 0.09);
+    e->must_refuse = kind == 4 || angle > 0.09;
     if (kind == 4)
       start_at(e, 1.2, HALF_HEIGHT);
   }

@@ -154,6 +154,11 @@ void stic_checker_row(stic_checker *k, const stic_result *r, const stic_event *e
         COMPLAIN("4: the anchor of vertex %d on surface %d moved by %.3g, %.3g without a slip", now->vertex,
                  now->surface, now->x - then->x, now->y - then->y);
     }
+  /* No answer: the object is where it last was. */
+  if (!k->first && (r->flags & STIC_FLAG_NO_ANSWER) && k->last.state != STIC_RELEASED &&
+      (r->x != k->last.x || r->y != k->last.y || r->theta != k->last.theta ||
+       r->contact_count != k->last.contact_count))
+    COMPLAIN("no answer, but moved");
   /* 7. Released, nothing moves. */
   if (!k->first && r->state == STIC_RELEASED &&
       (r->x != k->last.x || r->y != k->last.y || r->theta != k->last.theta ||

@@ -56,8 +56,9 @@ static void relax(core *c, hand target, double t)
   }
   if (stage == STAGES_MAX)
     c->report->flags |= STIC_FLAG_LIMIT;
-  if (stage + 1 > c->report->stages_worst)
-    c->report->stages_worst = stage + 1;
+  int stages = stage < STAGES_MAX ? stage + 1 : STAGES_MAX;
+  if (stages > c->report->stages_worst)
+    c->report->stages_worst = stages;
   forget_opened_that_left(c);
   if (c->longest_slide > 0) {
     c->report->flags |= STIC_FLAG_SLIPPED;

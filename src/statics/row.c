@@ -58,7 +58,6 @@ static double balance_residual(const core *c, const vec *forces)
 static void core_result(void *memory, stic_hand h, bool held, stic_result *r)
 {
   core *c = memory;
-  vec forces[CONTACTS_MAX];
   int order[CONTACTS_MAX];
   double force_unit = held ? c->force_unit : 0;
   c->hand = hand_in(c, h);
@@ -70,13 +69,11 @@ static void core_result(void *memory, stic_hand h, bool held, stic_result *r)
   r->force_x = (double)f.x * force_unit;
   r->force_y = (double)f.y * force_unit;
   r->moment = (double)spring_moment(c) * force_unit * c->unit;
-  for (int i = 0; i < c->contact_count; i++)
-    forces[i] = v_make(0, 0);
-  if (held)
-    least_norm_forces(c, forces);
+  for (int i = 0; i < c->contact_count && !held; i++)
+    c->forces[i] = v_make(0, 0);
   if (held && is_wedged(c))
     r->flags |= STIC_FLAG_WEDGED;
-  r->residual = held ? balance_residual(c, forces) : 0;
+  r->residual = held ? balance_residual(c, c->forces) : 0;
   r->contact_count = c->contact_count;
   sort_contacts(c, order);
   for (int i = 0; i < c->contact_count; i++) {
@@ -87,7 +84,7 @@ static void core_result(void *memory, stic_hand h, bool held, stic_result *r)
     to->surface = k->surface;
     to->x = (double)k->place.x * c->unit;
     to->y = (double)k->place.y * c->unit;
-    to->normal = (double)r_max(0, v_dot(forces[order[i]], s->n)) * force_unit;
-    to->friction = (double)v_dot(forces[order[i]], s->t) * force_unit;
+    to->normal = (double)r_max(0, v_dot(c->forces[order[i]], s->n)) * force_unit;
+    to->friction = (double)v_dot(c->forces[order[i]], s->t) * force_unit;
   }
 }

@@ -17,6 +17,7 @@
 #include "relax.c"
 #include "slide_on.c"
 #include "follow.c"
+#include "answer.c"
 #include "row.c"
 
 static hand hand_in(const core *c, stic_hand h)
@@ -105,8 +106,11 @@ static void core_relax(void *memory, stic_hand h, double t, stic_core_report *re
   c->report = report;
   c->flow_steps = 0;
   c->sliding = false;
+  last_pose before;
+  keep(c, &before);
   relax(c, hand_in(c, h), t);
   c->window_open = c->happened;
+  answer(c, c->hand, &before);
 }
 
 static void core_follow(void *memory, stic_hand from, stic_hand to, double t_from, double t_to,
@@ -116,11 +120,14 @@ static void core_follow(void *memory, stic_hand from, stic_hand to, double t_fro
   c->report = report;
   c->flow_steps = 0;
   hand a = hand_in(c, from), b = hand_in(c, to);
+  last_pose before;
+  keep(c, &before);
   switch (c->settings.level) {
   case STIC_LEVEL_FRAME: relax(c, b, t_to); break;
   case STIC_LEVEL_SUBSTEP: follow_substeps(c, a, b, t_from, t_to); break;
   case STIC_LEVEL_EVENT: follow_event(c, a, b, t_from, t_to); break;
   }
+  answer(c, b, &before);
 }
 
 static void core_pose(const void *memory, double *x, double *y, double *theta)

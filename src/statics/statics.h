@@ -131,6 +131,8 @@ typedef struct core {
   bool sliding;       /* mu_s = mu_d: the contacts slide on without events, and ... */
   real sliding_sense; /* ... in this sense: along t for one contact or an edge, of theta for a trammel */
 
+  vec forces[CONTACTS_MAX]; /* of the contacts, over k_p: those of the last row */
+
   /* during one RELAX */
   hand hand;
   double event_time;
@@ -250,6 +252,11 @@ static verdict judge(core *c);
 static bool viscous_flow(core *c);
 static void relax(core *c, hand target, double t);
 static bool slides_on(const core *c);
+
+/* ---- answer.c: what a sample ends with ---- */
+struct last_pose;
+static void keep(const core *c, struct last_pose *k);
+static void answer(core *c, hand target, const struct last_pose *before);
 
 /* ---- follow.c: accuracy levels ---- */
 static void follow_event(core *c, hand from, hand to, double t_from, double t_to);
