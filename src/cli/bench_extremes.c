@@ -25,7 +25,7 @@ static const stic_level levels[LEVELS] = {STIC_LEVEL_FRAME, STIC_LEVEL_SUBSTEP, 
 static const char *const level_names[LEVELS] = {"frame", "substep=3", "event"};
 
 /* RELAX calls in one sample: 10,000 at level event, and the last one. */
-static const int relaxations_bound[LEVELS] = {1, SUBSTEPS, 10025};
+static const int relaxations_bound[LEVELS] = {1, SUBSTEPS, 10000 + 25};
 
 /* ---- what is counted ------------------------------------------------------------------------- */
 

@@ -8,6 +8,7 @@ enum {
   FLOW_CONTACTS_MAX = 6,
   FLOW_UNKNOWNS = 3 + 2 * FLOW_CONTACTS_MAX,
   FLOW_STEPS_MAX = 2000,
+  FLOW_SOLVES_MAX = 40000,
   FLOW_BISECTIONS = 60
 };
 
@@ -50,7 +51,8 @@ static vec flow_direction(const flow *f, int i)
  * constraints: unknowns are dg/ds, dtheta/ds and one or two force components per closed contact. */
 static bool flow_solve(const flow *f, flow_rates *r)
 {
-  const core *c = f->c;
+  core *c = f->c;
+  c->flow_solves++;
   real m[FLOW_UNKNOWNS][FLOW_UNKNOWNS + 1] = {{0}};
   vec force = spring_force(c), g = holding_point(c);
   int n = 3;
@@ -139,7 +141,7 @@ static bool find_modes(flow *f)
   int combinations = 1;
   for (int i = 0; i < f->count; i++)
     combinations *= FLOW_MODES;
-  for (int k = 0; k < combinations; k++) {
+  for (int k = 0; k < combinations && f->c->flow_solves < FLOW_SOLVES_MAX; k++) {
     for (int i = f->count - 1, rest = k; i >= 0; i--, rest /= FLOW_MODES)
       f->modes[i] = (flow_mode)(rest % FLOW_MODES);
     flow_rates r;

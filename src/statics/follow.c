@@ -298,6 +298,13 @@ static void count_slide_on(core *c)
   c->slid_on = 0;
 }
 
+/* Work of the sample so far, about in units of a step of root finding: events that each need many stages or a flow
+ * must not hold up the loop. */
+static int work_done(const core *c)
+{
+  return c->report->iterations + 16 * c->stages + 4 * c->flow_solves;
+}
+
 static void follow_event(core *c, hand from, hand to, double t_from, double t_to)
 {
   hand_path w = {from, to, v_sub(to.h, from.h), to.phi - from.phi};
@@ -305,7 +312,8 @@ static void follow_event(core *c, hand from, hand to, double t_from, double t_to
   real window = path_length > 0 ? (real)c->settings.h_min * c->body.size / path_length : R(1.0);
   real tau = 0;
   for (int events = 0; tau < 1; events++) {
-    if (events == SAMPLE_EVENTS_MAX) {
+    if (events == SAMPLE_EVENTS_MAX || c->report->relaxations >= SAMPLE_EVENTS_MAX ||
+        work_done(c) > SAMPLE_WORK_MAX) {
       c->report->flags |= STIC_FLAG_LIMIT;
       relax(c, to, t_to);
       c->window_open = c->happened && !c->sliding;

@@ -57,6 +57,7 @@ static void relax(core *c, hand target, double t)
   if (stage == STAGES_MAX)
     c->report->flags |= STIC_FLAG_LIMIT;
   int stages = stage < STAGES_MAX ? stage + 1 : STAGES_MAX;
+  c->stages += stages;
   if (stages > c->report->stages_worst)
     c->report->stages_worst = stages;
   forget_opened_that_left(c);

@@ -104,7 +104,7 @@ static void core_relax(void *memory, stic_hand h, double t, stic_core_report *re
 {
   core *c = memory;
   c->report = report;
-  c->flow_steps = 0;
+  c->flow_steps = c->flow_solves = c->stages = 0;
   c->sliding = false;
   last_pose before;
   keep(c, &before);
@@ -118,7 +118,7 @@ static void core_follow(void *memory, stic_hand from, stic_hand to, double t_fro
 {
   core *c = memory;
   c->report = report;
-  c->flow_steps = 0;
+  c->flow_steps = c->flow_solves = c->stages = 0;
   hand a = hand_in(c, from), b = hand_in(c, to);
   last_pose before;
   keep(c, &before);
