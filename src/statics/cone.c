@@ -486,8 +486,13 @@ static bool loads_balance(core *c)
 /* Into the cone, for what the tolerances of JUDGE let stand a little outside. */
 static vec clamp_to_cone(const surface *s, vec f)
 {
-  real n = r_max(0, v_dot(f, s->n)), limit = s->mu_s * n;
-  real t = r_max(-limit, r_min(limit, v_dot(f, s->t)));
+  real n = r_max(0, v_dot(f, s->n)), t = v_dot(f, s->t);
+  if (s->mu_s > 1) { /* there N is the smaller one: mu_s times its rounding would be much of T */
+    n = r_max(n, r_abs(t) / s->mu_s);
+  } else {
+    real limit = s->mu_s * n;
+    t = r_max(-limit, r_min(limit, t));
+  }
   return v_add(v_scale(s->n, n), v_scale(s->t, t));
 }
 
