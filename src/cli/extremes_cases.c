@@ -251,7 +251,7 @@ static bool surfaces(stic_extreme *e, int index, int frames)
     e->parameter = 2 * HALF_HEIGHT * wider;
     add_surface(e, 1.2, e->parameter, 270 + degrees);
     start_at(e, 1.2, e->parameter / 2);
-    e->must_refuse = kind == 4 || angle > 0.09;
+    e->must_refuse = kind == 4 || (kind == 1 && angle > 0.09);
     if (kind == 4)
       start_at(e, 1.2, HALF_HEIGHT);
   }

@@ -48,12 +48,11 @@ static void print_map(FILE *script, const stic_heat_map *map, int index)
 
   fprintf(script, "set title '%s' font ',14' tc rgb '#222222' noenhanced\n", map->title);
   fprintf(script, "set xlabel '%s' noenhanced\nset ylabel '%s' noenhanced\n", map->label_a, map->label_b);
-  fprintf(
-    script,
-    "plot $d%d using 1:2:($1-%g):($1+%g):($2-%g):($2+%g):(isnan($3)?NaN:$3) with boxxyerror fs solid 1 "
-    "noborder lc palette notitle, '' using (isnan($3)?$1:NaN):2 with points pt 2 ps 0.5 lc rgb '#b0b0b0' "
-    "notitle\n",
-    index, width, width, height, height);
+  fprintf(script,
+          "plot $d%d using 1:2:($1-%g):($1+%g):($2-%g):($2+%g):($3==$3?$3:NaN) with boxxyerror fs solid 1 "
+          "noborder lc palette notitle, '' using ($3==$3?NaN:$1):2 with points pt 2 ps 0.5 lc rgb '#b0b0b0' "
+          "notitle\n",
+          index, width, width, height, height);
 }
 
 static void print_script(FILE *script, const char *png, const stic_heat_map *maps, int count, int columns)
@@ -73,7 +72,7 @@ static void print_script(FILE *script, const char *png, const stic_heat_map *map
     "set cbrange [0:16]\nset cbtics 2 tc rgb '#444444'\nset cblabel 'digits of the balance'\n"
     "set colorbox noborder\nset format x '10^{%%.0f}'\nset format y '10^{%%.0f}'\n"
     "set xtics 3 nomirror tc rgb '#444444'\nset ytics 3 nomirror tc rgb '#444444'\n"
-    "set border 3 lc rgb '#888888'\nset autoscale xyfix\nset offsets 0.6,0.6,0.6,0.6\n");
+    "set border 3 lc rgb '#888888'\nset autoscale xfix\nset autoscale yfix\nset offsets 0.6,0.6,0.6,0.6\n");
   fprintf(script,
           "set multiplot layout %d,%d title 'Digits to which force and moment balance in the worst row; "
           "crosses: refused, or no row has an answer' font ',16' noenhanced\n",

@@ -45,6 +45,8 @@ void stic_checker_row(stic_checker *k, const stic_result *r, const stic_event *e
 {
   const stic_scene *s = k->scene;
   double c = cos(r->theta), si = sin(r->theta), k_p = s->stiffness, rounding = stic_checker_rounding(k, r);
+  if (!k->first && r->x == k->last.x && r->y == k->last.y && r->theta == k->last.theta)
+    rounding = largest_of(rounding, k->last_rounding);
   double eps = 4096 * k->ulp * k->size + rounding;
   k->rows++;
   if (r->flags & (STIC_FLAG_NO_ANSWER | STIC_FLAG_LIMIT))
@@ -130,7 +132,7 @@ void stic_checker_row(stic_checker *k, const stic_result *r, const stic_event *e
       COMPLAIN("2: force residual %.3g, allowed %.3g (largest %.3g)", off, allowed, largest);
     if (!(off_moment <= allowed_moment))
       COMPLAIN("2: moment residual %.3g, allowed %.3g (largest %.3g)", off_moment, allowed_moment, largest);
-    if (!(r->residual <= 4096 * k->ulp + 2e-12 + allowed_moment / largest))
+    if (!(r->residual <= (4096 * k->ulp + 2e-12 + allowed_moment / largest) * reach / k->size))
       COMPLAIN("2: the row says a residual of %.3g", r->residual);
   }
   /* 4. A stuck anchor does not move by a bit. */
@@ -179,5 +181,6 @@ void stic_checker_row(stic_checker *k, const stic_result *r, const stic_event *e
       COMPLAIN("7: moved by %.3g when taken", off);
   }
   k->last = *r;
+  k->last_rounding = rounding;
   k->first = false;
 }

@@ -11,7 +11,8 @@ typedef struct stic_checker {
   double size; /* of the object, m */
   bool first;
   stic_result last;
-  char complaint[512]; /* "" while all is well */
+  double last_rounding; /* of the row before: a pose that is kept was right within that */
+  char complaint[512];  /* "" while all is well */
   /* largest values seen, in units of what is allowed */
   double worst_depth, worst_residual, worst_anchor;
   double worst_relative_residual; /* of force and moment, relative to the largest term */

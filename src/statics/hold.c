@@ -21,7 +21,7 @@ static bool move_free(core *c, vec travel, real turn)
   if (t.at < R_HUGE) {
     /* On a very long way the place of the touch has the rounding of its far end: take that off. */
     real gap = gap_of(c, world_vertex(c, t.vertex), t.surface);
-    if (r_abs(gap) > 16 * REAL_EPSILON * (c->body.world_extent + r_abs(c->p.x) + r_abs(c->p.y) + c->body.size))
+    if (r_abs(gap) > rounding_here(c))
       c->p = v_mix(c->p, -gap, c->body.surfaces[t.surface].n);
     add_contact(c, t.vertex, t.surface);
   }

@@ -8,6 +8,10 @@ enum { REVERSALS_MAX = 8 };
 /* The contact has come to a new place on its surface. */
 static void slide_to(core *c, contact *k, vec place)
 {
+  /* Coming back from far away, the place has the rounding of where it was. */
+  vec at = world_vertex(c, k->vertex);
+  if (v_length(v_sub(at, place)) > rounding_here(c))
+    place = at;
   vec on_surface = onto_surface(c, place, k->surface);
   real length = v_length(v_sub(on_surface, k->place));
   k->place = on_surface;

@@ -191,6 +191,7 @@ typedef struct touch {
   int vertex, surface;
 } touch;
 
+static real rounding_here(const core *c);
 static void near_update(core *c, real travel);
 static bool next_near(const core *c, near_pair *k);
 static bool is_contact(const core *c, int vertex, int on);

@@ -1,6 +1,12 @@
 /* Which vertex reaches which surface first [5, first paragraph], and the list of contacts. */
 #include "statics.h"
 
+/* Well above what a place can be off by rounding where the object is, however far away the hand is. */
+static real rounding_here(const core *c)
+{
+  return 16 * REAL_EPSILON * (c->body.world_extent + r_abs(c->p.x) + r_abs(c->p.y) + c->body.size);
+}
+
 static bool is_contact(const core *c, int vertex, int on)
 {
   for (int i = 0; i < c->contact_count; i++)
