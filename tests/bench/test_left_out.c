@@ -9,11 +9,11 @@
 #include <string.h>
 
 #include "golden.h"
+#include "invariants/random_scene.h"
+#include "invariants/wild.h"
 #include "io/log_csv.h"
 #include "needs.h"
-#include "random_scene.h"
 #include "sim.h"
-#include "wild.h"
 
 static const char *const accuracies[] = {"frame", "substep=8", "event"};
 
