@@ -2,6 +2,7 @@
 # Installs what is missing, builds with both compilers and with sanitizers, and runs all tests.
 #   ./check.sh            everything
 #   ./check.sh --quick    one build, without the slow labels
+#   ./check.sh --fuzz 60  each fuzzer for 60 minutes, two at a time; failures are left in build-fuzz/tests/fuzz/found/
 #   ./check.sh --peers    no tests, but a table of stiction beside dynamics engines (tests/peers/README.md)
 #   ./check.sh --coverage counts which lines and branches of src/ and drivers/ the tests run, and lists the others
 set -euo pipefail
@@ -27,6 +28,12 @@ if [ "${1:-}" = --peers ]; then
 fi
 
 need build run video devices view test check
+
+if [ "${1:-}" = --fuzz ]; then
+  cmake --preset ci -B build-fuzz -DSTICTION_FUZZ_SECONDS=$((60 * ${2:-10})) >/dev/null
+  cmake --build build-fuzz
+  exec ctest --test-dir build-fuzz -L fuzz -j "$(nproc)" --output-on-failure
+fi
 
 if [ "${1:-}" = --quick ]; then
   configure_and_build ci

@@ -104,8 +104,9 @@ static int check_files(const stic_cli_args *args, char **set)
   }
   scene_good =
     stic_scene_read_all(args->positions[0], overrides, override_count, scene, on_finding, &f) == STIC_OK;
-  check_tracker(args->positions[0], &f);
-  if (args->position_count > 1)
+  if (stic_cli_signal() == 0)
+    check_tracker(args->positions[0], &f);
+  if (args->position_count > 1 && stic_cli_signal() == 0)
     check_trace(args->positions[1], scene_good ? scene : NULL, &f);
   free(overrides);
   free(scene);

@@ -81,7 +81,7 @@ static int open_place(stic_outfile *out)
   int problem = errno;
 
   /* A link to nothing, or in a circle: the rename would replace the link. */
-  if (!exists && lstat(out->path, &st) == 0)
+  if (!exists && (problem != ENOENT || lstat(out->path, &st) == 0))
     return problem;
   if (exists && S_ISDIR(st.st_mode))
     return EISDIR;

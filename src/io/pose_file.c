@@ -3,6 +3,7 @@
 #include "../error.h"
 #include "../number.h"
 #include "line_reader.h"
+#include "trace_csv.h"
 
 #include <errno.h>
 #include <math.h>
@@ -12,8 +13,7 @@
 
 #define COLUMNS 8
 #define NORM_TOLERANCE 0.01
-#define EUROC_MAX INT64_C(9200000000000000000) /* ns, what a trace can hold */
-#define POSITION_MAX 1e18                      /* m, as in a trace */
+#define POSITION_MAX 1e18 /* m, as in a trace */
 
 struct stic_pose_reader {
   stic_line_reader *lines;
@@ -110,12 +110,12 @@ static bool read_time(const stic_pose_reader *r, const stic_field *field, int64_
   const bool tum = r->format == STIC_POSE_TUM;
   const stic_number_status status =
     tum ? stic_number_parse_ns(field->text, field->length, t_ns)
-        : stic_number_parse_integer(field->text, field->length, 0, EUROC_MAX, t_ns);
+        : stic_number_parse_integer(field->text, field->length, 0, STIC_TRACE_TIME_MAX_NS, t_ns);
 
   stic_error_quote(field->text, field->length, text, sizeof text);
-  if (status != STIC_NUMBER_OK) {
+  if (status != STIC_NUMBER_OK || *t_ns > STIC_TRACE_TIME_MAX_NS || *t_ns < -STIC_TRACE_TIME_MAX_NS) {
     BAD(r, err, "timestamp is '%s'; expected %s", text,
-        tum ? "seconds as a plain number within +-9.2e9" : "whole nanoseconds");
+        tum ? "seconds as a plain number within +-4e9" : "whole nanoseconds");
     return false;
   }
   if (r->poses > 0 && *t_ns <= r->last_ns) {

@@ -19,7 +19,6 @@
 #define NORM_TOLERANCE 0.01
 /* Far beyond any tracker, and still exact to 1e-9 m. */
 #define POSITION_MAX 1e18
-#define TIME_MAX_NS INT64_C(4000000000000000000) /* 126 years: differences of two times do not overflow */
 
 static const char *const column_names[COLUMNS] = {"t", "x", "y", "z", "qx", "qy", "qz", "qw", "buttons"};
 
@@ -91,7 +90,7 @@ static bool read_time(const stic_trace_reader *r, const stic_field *field, int64
     BAD(r, err, "t is '%s'; expected seconds as a plain number", text);
     return false;
   case STIC_NUMBER_OK:
-    if (*t_ns >= -TIME_MAX_NS && *t_ns <= TIME_MAX_NS)
+    if (*t_ns >= -STIC_TRACE_TIME_MAX_NS && *t_ns <= STIC_TRACE_TIME_MAX_NS)
       break;
     /* fall through */
   case STIC_NUMBER_TOO_LARGE: BAD(r, err, "t is '%s'; expected seconds within +-4e9", text); return false;

@@ -6,6 +6,8 @@
 
 #define STIC_TRACE_FORMAT "# stiction-trace 1"
 #define STIC_TRACE_HEADER "t,x,y,z,qx,qy,qz,qw,buttons"
+/* Times lie within +- this, 126 years: differences of two do not overflow. */
+#define STIC_TRACE_TIME_MAX_NS INT64_C(4000000000000000000)
 /* Bit of the `buttons` column that carries stic_sample.lost, so that a recording holds all that the
  * solver was given. */
 #define STIC_TRACE_BUTTON_LOST 0x80000000u
