@@ -1,12 +1,12 @@
 /* Scenes and hand paths made of bytes, extremes included, solved at every level and precision. Each row is finite and
- * within its bounds; where the model's invariants are promised (f64, and magnitudes as in tests/statics/wild.h) they
+ * within its bounds; where the model's invariants are promised (f64, and magnitudes as in src/invariants/wild.h) they
  * hold. A failure prints its case; with FUZZ_SAY=1 set every case is printed, to look into a slow one. */
 #include "memory_file.h"
 
 #include "inside.h"
 #include "statics/core.h"
-#include "invariants_check.h"
-#include "wild.h"
+#include "invariants/checker.h"
+#include "invariants/wild.h"
 
 #define SAMPLES_MAX 24
 
@@ -215,7 +215,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   bytes b = {data, data + size};
   const int kind = take(&b);
   static wild_case c;
-  static checker k;
+  static stic_checker k;
   static stic_result r;
   stic_settings settings;
   stic_sim *sim;
@@ -228,7 +228,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   if (!take_case(&b, &c, settings.precision == STIC_F32))
     return 0;
   require(stic_sim_create(&c.scene, &settings, &sim, &err) == STIC_OK);
-  checker_init(&k, &c.scene, settings.precision);
+  stic_checker_init(&k, &c.scene, settings.precision);
   if (getenv("FUZZ_SAY"))
     say_case(&c, &settings);
   memset(&r, 0, sizeof r);
@@ -249,7 +249,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     check_always(&r);
     if (settings.precision != STIC_F64)
       continue;
-    check_row(&k, &r, events, count, (inside_report.row_decisions & ~(unsigned)STIC_DECISION_REST) != 0);
+    stic_checker_row(&k, &r, events, count, (inside_report.row_decisions & ~(unsigned)STIC_DECISION_REST) != 0);
     if (!k.complaint[0] && inside_report.worst_rise <= 1)
       continue;
     say_case(&c, &settings);
