@@ -46,6 +46,8 @@ typedef struct stic_outcome {
   uint64_t events;    /* of the sequence of touches, openings, slips and snaps, without their times */
 } stic_outcome;
 
+/* Room for that many rows, if there is none yet. On failure the outcome is empty. */
+stic_status stic_outcome_reserve(stic_outcome *outcome, int count, stic_error *err);
 /* Solves every stride-th sample. A second run into the same outcome adds its times; it must give the same hash
  * (else STIC_FAILED). `stride` 1 times the steps. After an error the outcome is empty. */
 stic_status stic_outcome_run(stic_outcome *outcome, const stic_motion *motion, const stic_settings *settings,

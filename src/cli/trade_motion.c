@@ -371,7 +371,7 @@ static stic_status keep_row(stic_outcome *o, run *r, int i, const stic_result *r
   return keep_slip_times(o, r->sim) ? STIC_OK : no_memory(err);
 }
 
-static stic_status make_room(stic_outcome *o, int count, stic_error *err)
+stic_status stic_outcome_reserve(stic_outcome *o, int count, stic_error *err)
 {
   if (o->rows)
     return STIC_OK;
@@ -394,7 +394,7 @@ stic_status stic_outcome_run(stic_outcome *o, const stic_motion *motion, const s
 {
   run r = {NULL, HASH_START, HASH_START, 0, HASH_START};
   stic_result result;
-  stic_status status = make_room(o, (motion->count + stride - 1) / stride, err);
+  stic_status status = stic_outcome_reserve(o, (motion->count + stride - 1) / stride, err);
 
   if (status == STIC_OK)
     status = stic_sim_create(&motion->scene, settings, &r.sim, err);

@@ -194,20 +194,6 @@ static void solve(run *r, stic_outcome *o)
   }
 }
 
-static stic_status make_room(stic_outcome *o, int count, stic_error *err)
-{
-  if (o->rows)
-    return STIC_OK;
-  o->count = count;
-  o->rows = malloc((size_t)count * sizeof *o->rows);
-  o->least_ns = malloc((size_t)count * sizeof *o->least_ns);
-  if (!o->rows || !o->least_ns)
-    return stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
-  for (int i = 0; i < count; i++)
-    o->least_ns[i] = INT64_MAX;
-  return STIC_OK;
-}
-
 static stic_status run_peer(const peer_contestant *who, const peer_scene *p, stic_outcome *o, double *onset,
                             stic_error *err)
 {
@@ -215,7 +201,7 @@ static stic_status run_peer(const peer_contestant *who, const peer_scene *p, sti
   const double *corner = scene->vertices[2];
   const double inertia = who->tuning.mass * (corner[0] * corner[0] + corner[1] * corner[1]) / 3;
   run r = {.scene = p, .engine = who->engine, .tuning = &who->tuning, .onset = NAN};
-  const stic_status status = make_room(o, p->motion.count, err);
+  const stic_status status = stic_outcome_reserve(o, p->motion.count, err);
 
   if (status != STIC_OK)
     return status;
