@@ -12,6 +12,8 @@
 #include "invariants/random_scene.h"
 #include "invariants/wild.h"
 #include "io/log_csv.h"
+#include "invariants/random_scene.h"
+#include "invariants/wild.h"
 #include "needs.h"
 #include "sim.h"
 
