@@ -71,7 +71,7 @@ static bool forces_balance(const core *c, real rounding)
   real turning = c->body.kappa * 8 * REAL_EPSILON * (r_abs(c->theta) + r_abs(c->hand.phi));
   if (c->contact_count == 0 && c->body.kappa == 0)
     moment = 0;
-  return v_length(sum) <= allowed &&
+  return largest < R_HUGE && v_length(sum) <= allowed &&
          r_abs(moment) / reach <= allowed + largest * rounding / size + turning / size;
 }
 

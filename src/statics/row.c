@@ -52,7 +52,8 @@ static double balance_residual(const core *c, const vec *forces)
     largest = c->body.size; /* small loads: to k_p size */
   if (c->contact_count == 0 && c->body.kappa == 0)
     moment = 0;
-  return (double)(r_max(v_length(sum), r_abs(moment) / c->body.size) / largest);
+  double residual = (double)(r_max(v_length(sum), r_abs(moment) / c->body.size) / largest);
+  return residual < 1 ? residual : 1; /* also where single precision overflows: no answer then */
 }
 
 static void core_result(void *memory, stic_hand h, bool held, stic_result *r)
