@@ -73,7 +73,7 @@ stic_font *stic_font_create(bool bold, double pixels)
     int code = i < ASCII_COUNT ? ASCII_FIRST + i : signs[i - ASCII_COUNT], advance, bearing;
 
     stbtt_GetCodepointHMetrics(&info, code, &advance, &bearing);
-    g->advance = advance * scale;
+    g->advance = (float)advance * scale;
     g->coverage =
       stbtt_GetCodepointBitmap(&info, scale, scale, code, &g->width, &g->height, &g->left, &g->top);
   }

@@ -293,7 +293,7 @@ static int free_columns(const balance *q, int i, real columns[2][3], real basis[
   if (q->bound[i] == BOUND_ZERO)
     return 0;
   if (q->bound[i] != BOUND_NONE) {
-    basis[0][0] = 1 / q->edge_length[i], basis[0][1] = q->bound[i] * q->mu[i] / q->edge_length[i];
+    basis[0][0] = 1 / q->edge_length[i], basis[0][1] = (real)q->bound[i] * q->mu[i] / q->edge_length[i];
     for (int k = 0; k < 3; k++)
       columns[0][k] = basis[0][0] * q->wrench_n[i][k] + basis[0][1] * q->wrench_t[i][k];
     return 1;
@@ -388,7 +388,7 @@ static real bounded_least_norm(const balance *q, const real target[3], real *n, 
 /* How far contact i's force is inside the side k of its cone. */
 static real inside_side(const balance *q, int i, int k, real n, real t)
 {
-  return q->mu[i] == 0 ? n : q->mu[i] * n - k * t;
+  return q->mu[i] == 0 ? n : q->mu[i] * n - (real)k * t;
 }
 
 static bool all_inside(const balance *q, const real *n, const real *t)
@@ -416,12 +416,12 @@ static int worst_bound(const balance *q, const real *n, const real *t, const rea
     real length = q->edge_length[i];
     if (q->bound[i] == BOUND_ZERO) {
       for (int k = -1; k <= 1; k += 2) {
-        real gain = (pull_n + k * q->mu[i] * pull_t) / length;
+        real gain = (pull_n + (real)k * q->mu[i] * pull_t) / length;
         if (gain > best)
           best = gain, worst = i, *to = k;
       }
     } else if (q->mu[i] > 0) {
-      real gain = (q->mu[i] * pull_n - q->bound[i] * pull_t) / length;
+      real gain = (q->mu[i] * pull_n - (real)q->bound[i] * pull_t) / length;
       if (gain > best)
         best = gain, worst = i, *to = BOUND_NONE;
     }
@@ -619,7 +619,7 @@ static bool cones_span_all(const core *c, const balance *q)
   for (int axis = 0; axis < 3; axis++)
     for (int sense = -1; sense <= 1; sense += 2) {
       real target[3] = {0, 0, 0};
-      target[axis] = sense;
+      target[axis] = (real)sense;
       if (nearest_in_cone(&g, target, weights, away) > TOLERANCE)
         return false;
     }

@@ -74,7 +74,7 @@ static void test_gaps_and_short_curves(void **state)
 
   (void)state;
   for (int i = 0; i < 5000; i++)
-    v[i] = i >= 1000 && i < 4000 ? NAN : i;
+    v[i] = i >= 1000 && i < 4000 ? NAN : (double)i;
   stic_decimate(v, jump, 5000, keep);
   assert_true(keep[999] && keep[1000] && keep[3999] && keep[4000]);
   stic_decimate(v, jump, STIC_CURVE_POINTS, keep);

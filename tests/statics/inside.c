@@ -16,19 +16,19 @@
 
 struct core;
 static bool hold_watched(struct core *c);
-static int judge_watched(struct core *c);
+static unsigned judge_watched(struct core *c);
 
 #include "statics/statics.c"
 
 #undef hold
 #undef judge
 
-static int judge_watched(core *c)
+static unsigned judge_watched(core *c)
 {
   verdict v = judge_itself(c);
   inside_report.decisions |= c->report->decisions;
   inside_report.row_decisions |= c->report->decisions;
-  return (int)v;
+  return (unsigned)v;
 }
 
 /* In long double, so that what is seen is the pose and not this sum. */
