@@ -5,6 +5,7 @@
 #include "module.h"
 #include "video_module.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 struct stic_video {
@@ -32,6 +33,15 @@ bool stic_video_available(void)
 
   stic_module_unload(library);
   return library != NULL;
+}
+
+void stic_video_licence(char *text, size_t size)
+{
+  const stic_video_module *module;
+  void *library = open_module(&module);
+
+  snprintf(text, size, "%s", library ? module->licence() : "");
+  stic_module_unload(library);
 }
 
 stic_status stic_video_create(const char *path, int width, int height, int fps, bool live, stic_video **video,

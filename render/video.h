@@ -12,6 +12,10 @@ typedef struct stic_video stic_video;
 /* True if this build can write video. */
 bool stic_video_available(void);
 
+/* The licence of the libav that writes video, as libav names it ("GPL version 2 or later", if x264 is in it), into
+ * `text` of `size` bytes, size > 0: "" if this build cannot write video. Not real-time: loads libav. */
+void stic_video_licence(char *text, size_t size);
+
 /* Starts a video of pictures width x height (px, even), `fps` of them a second; the kind follows from the
  * path's ending. `live` trades size for speed (H.264 only). The path is copied. STIC_USAGE for another
  * ending, a build without libav or a libav without the encoder; STIC_CANNOT_WRITE; STIC_NO_MEMORY. The

@@ -22,7 +22,8 @@ typedef struct video_kind {
 } video_kind;
 
 static const video_kind kinds[] = {
-  {".mp4", "mp4", "libx264", AV_PIX_FMT_YUV420P, "preset=veryfast:crf=20:rc-lookahead=10:aq-mode=1", "preset=ultrafast:crf=20"},
+  {".mp4", "mp4", "libx264", AV_PIX_FMT_YUV420P, "preset=veryfast:crf=20:rc-lookahead=10:aq-mode=1",
+   "preset=ultrafast:crf=20"},
   {".mkv", "matroska", "libx264rgb", AV_PIX_FMT_BGR0, "preset=ultrafast:qp=0", "preset=ultrafast:qp=0"},
   {".webm", "webm", "libvpx-vp9", AV_PIX_FMT_YUV420P, "deadline=realtime:cpu-used=8:crf=32",
    "deadline=realtime:cpu-used=8:crf=32"}};
@@ -276,5 +277,5 @@ static void video_destroy(stic_video_writer *v)
   free(v);
 }
 
-STIC_API const stic_video_module stic_video_libav = {STIC_VIDEO_MODULE, video_create, video_add,
-                                                     video_finish,      video_keep,   video_destroy};
+STIC_API const stic_video_module stic_video_libav = {
+  STIC_VIDEO_MODULE, avcodec_license, video_create, video_add, video_finish, video_keep, video_destroy};

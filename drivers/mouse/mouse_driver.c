@@ -98,7 +98,7 @@ static bool wait_for_window(const mouse_device *d, int64_t until_ns)
   if (left_ms <= 0 || poll(&wake, 1, left_ms < 60000 ? (int)left_ms : 60000) < 0)
     return false;
   while (read(d->wake[0], bytes, sizeof bytes) == (ssize_t)sizeof bytes)
-    continue;
+    ;
   return true;
 }
 
@@ -109,7 +109,7 @@ static int mouse_poll(stic_device *device, int64_t until_ns, stic_device_sample 
   int count = 0;
 
   while (!stic_ring_front(d->samples) && wait_for_window(d, until_ns))
-    continue;
+    ;
   while (count < capacity && (front = stic_ring_front(d->samples))) {
     samples[count++] = *front;
     stic_ring_take(d->samples);

@@ -89,11 +89,11 @@ static void set_pointer(const stic_window *w, stic_window_kind kind, stic_window
 {
   event->kind = kind;
   set_place(w, event);
-  event->buttons = (w->buttons & SDL_BUTTON_LMASK ? STIC_POINTER_LEFT : 0u) |
-                   (w->buttons & SDL_BUTTON_MMASK ? STIC_POINTER_MIDDLE : 0u) |
-                   (w->buttons & SDL_BUTTON_RMASK ? STIC_POINTER_RIGHT : 0u);
-  event->modifiers = (w->modifiers & KMOD_SHIFT ? STIC_MODIFIER_SHIFT : 0u) |
-                     (w->modifiers & KMOD_CTRL ? STIC_MODIFIER_CTRL : 0u);
+  event->buttons = ((w->buttons & SDL_BUTTON_LMASK) ? STIC_POINTER_LEFT : 0u) |
+                   ((w->buttons & SDL_BUTTON_MMASK) ? STIC_POINTER_MIDDLE : 0u) |
+                   ((w->buttons & SDL_BUTTON_RMASK) ? STIC_POINTER_RIGHT : 0u);
+  event->modifiers = ((w->modifiers & KMOD_SHIFT) ? STIC_MODIFIER_SHIFT : 0u) |
+                     ((w->modifiers & KMOD_CTRL) ? STIC_MODIFIER_CTRL : 0u);
 }
 
 static void set_wheel(const SDL_MouseWheelEvent *wheel, stic_window_event *event)

@@ -98,11 +98,13 @@ stic_status stic_auto_level(const stic_scene *scene, int64_t budget_ns, stic_set
   const int64_t start_ns = stic_clock_ns();
   int64_t *cost = malloc(SAMPLES * sizeof *cost);
   stic_motion motion;
-  stic_status status = cost ? stic_motion_along_surfaces(&motion, scene, SAMPLES, err)
-                            : stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
+  stic_status status;
   int all;
 
   memset(choice, 0, sizeof *choice);
+  if (!cost)
+    return stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
+  status = stic_motion_along_surfaces(&motion, scene, SAMPLES, err);
   if (status != STIC_OK) {
     free(cost);
     return status;

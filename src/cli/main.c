@@ -1,5 +1,7 @@
 /* The program `stiction`: finds the command and hands over. */
 #include "cli.h"
+#include "video.h"
+#include "window/window.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -47,7 +49,16 @@ static int show_help(void)
 
 static int show_version(void)
 {
-  printf("stiction %s\nMIT licence\n", stic_version());
+  char libav[64];
+
+  stic_video_licence(libav, sizeof libav);
+  printf("stiction %s\n", stic_version());
+  if (strncmp(libav, "GPL", 3) == 0)
+    printf("MIT licence; together with the libav that it was built with (x264): %s\n", libav);
+  else
+    printf("MIT licence\n");
+  printf("video: %s%s\n", *libav ? "libav, " : "none", libav);
+  printf("window: %s\n", stic_window_available() ? "SDL" : "none");
   return (int)stic_cli_flush();
 }
 

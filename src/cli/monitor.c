@@ -346,8 +346,8 @@ static void draw_sketch(sketch *s, const stic_monitor *m, int columns, int rows,
   s->down = down;
   s->metres = span_of(m, columns, rows) / (4 * rows);
   s->hand_column = s->hand_row = -1;
-  s->centre[0] = points > 0 ? (m->low[0] + m->high[0]) / 2 : 0;
-  s->centre[1] = points > 0 ? (m->low[up] + m->high[up]) / 2 : 0;
+  s->centre[0] = m->trail_count > 0 ? (m->low[0] + m->high[0]) / 2 : 0;
+  s->centre[1] = m->trail_count > 0 ? (m->low[up] + m->high[up]) / 2 : 0;
   for (int64_t i = 0; i < points; i++) {
     const double at[2] = {m->trail[i][0], m->trail[i][up]};
 

@@ -1,5 +1,5 @@
-# cpack -G DEB: libstiction0, libstiction-dev, stiction, and stiction-video apart from it, because with x264 that one
-# is under the GPL and draws in libav. Configure with -DCMAKE_INSTALL_PREFIX=/usr.
+# cpack -G DEB: libstiction0, libstiction-dev, stiction, and two packages apart from it: stiction-video draws in libav and
+# with x264 is under the GPL, stiction-view draws in SDL. Configure with -DCMAKE_INSTALL_PREFIX=/usr.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR stiction)
 set(CPACK_PACKAGE_CONTACT "The stiction authors <stiction@localhost>" CACHE STRING "Maintainer in Debian packages")
@@ -38,9 +38,14 @@ debian_package(program stiction science "${about}"
   "The program: solves traces and live trackers; logs, pictures, plots.")
 debian_package(video stiction-video video "${about} (video)"
   "The part of the program stiction that writes video, through libav.")
+debian_package(view stiction-view science "${about} (live view)"
+  "The part of the program stiction that shows a run in a window, through SDL.")
 set(CPACK_COMPONENTS_ALL library development program)
 if(TARGET stiction_video)
   list(APPEND CPACK_COMPONENTS_ALL video)
+endif()
+if(TARGET stiction_window)
+  list(APPEND CPACK_COMPONENTS_ALL view)
 endif()
 
 set(own_version "(= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})")
@@ -50,8 +55,9 @@ set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_BINARY_DIR}/shlib
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libstiction0 ${own_version}")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libode-dev, libyaml-dev")
 set(CPACK_DEBIAN_VIDEO_PACKAGE_DEPENDS "stiction ${own_version}")
+set(CPACK_DEBIAN_VIEW_PACKAGE_DEPENDS "stiction ${own_version}")
 # found when they are wanted: a renderer, and gnuplot for `stiction plot`
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libosmesa6 | libegl1, gnuplot-nox | gnuplot, stiction-video")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libosmesa6 | libegl1, gnuplot-nox | gnuplot, stiction-video, stiction-view")
 
 set(licences)
 foreach(file LICENSE render/LICENSE.dejavu render/report/LICENSE.uplot)

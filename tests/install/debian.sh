@@ -29,9 +29,12 @@ done
 depends libstiction0 libode
 depends libstiction-dev "libstiction0 (= "
 depends stiction libpopt0
-if dpkg-deb -f "$work"/stiction_*.deb Depends | grep libav; then
-  fail "stiction depends on libav, which is stiction-video's part"
+if dpkg-deb -f "$work"/stiction_*.deb Depends | grep -E 'libav|libsdl'; then
+  fail "stiction depends on what is stiction-video's and stiction-view's part"
 fi
+for part in video:libavcodec view:libsdl2; do
+  [ ! -f "$work/stiction-${part%:*}"_*.deb ] || depends "stiction-${part%:*}" "${part#*:}"
+done
 
 "$work/root/usr/bin/stiction" --version
 [ -f "$work/root/usr/$lib/libstiction.so.0" ] || fail "no shared library"

@@ -60,6 +60,10 @@ fi
 try "$work/first"
 mv "$work/first" "$work/moved"
 try "$work/moved"
+# Without its modules the program still runs, under its own licence alone.
+rm -rf "$work/moved/$lib/stiction"
+"$work/moved/bin/stiction" --version >"$work/version"
+printf 'stiction %s\nMIT licence\nvideo: none\nwindow: none\n' "$version" | diff - "$work/version"
 
 example=$work/moved/share/doc/libstiction-dev/examples
 "$CMAKE" -S "$example" -B "$work/example" -DCMAKE_C_COMPILER="$CC" -DCMAKE_PREFIX_PATH="$work/moved" >"$work/log"
