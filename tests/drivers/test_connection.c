@@ -77,39 +77,55 @@ static void test_backoff(void **state)
 
 /* ---- the supervisor over a port ---------------------------------------------------------- */
 
-/* The unit lives in a thread of its own; the faults are set before it starts. */
+/* The unit lives in a thread of its own; the faults are set before it starts. On a loaded machine silence and loss may
+ * come at any time without being asked for: the tests wait for what must come in the end, and say no times. */
 typedef struct plugged {
   emulator unit;
   logitech_pty pty;
   pthread_t thread;
   pthread_mutex_t lock;
-  bool stopped;
+  bool stopped, silent; /* under the lock */
+  bool held;            /* the button; else it is let go for a moment twice a second */
 } plugged;
 
 static void hand_held(void *context, int64_t t_ns, emulator_record *record)
 {
-  (void)context, (void)t_ns;
+  plugged *p = context;
+
   memset(record, 0, sizeof *record);
   record->position[1] = 4000;
-  record->bits = 4;
+  pthread_mutex_lock(&p->lock);
+  record->bits = p->held || t_ns / (100 * MS) % 5 > 0 ? 4 : 0;
+  pthread_mutex_unlock(&p->lock);
 }
 
-static bool is_stopped(plugged *p)
+static bool get(plugged *p, const bool *flag)
 {
-  bool stopped;
+  bool value;
 
   pthread_mutex_lock(&p->lock);
-  stopped = p->stopped;
+  value = *flag;
   pthread_mutex_unlock(&p->lock);
-  return stopped;
+  return value;
+}
+
+static void set(plugged *p, bool *flag, bool value)
+{
+  pthread_mutex_lock(&p->lock);
+  *flag = value;
+  pthread_mutex_unlock(&p->lock);
 }
 
 static void *live(void *context)
 {
   plugged *p = context;
 
-  while (!is_stopped(p) && logitech_pty_serve(&p->pty, 10 * MS))
-    ;
+  while (!get(p, &p->stopped)) {
+    if (get(p, &p->silent))
+      stic_clock_sleep_until(stic_clock_ns() + 10 * MS);
+    else if (!logitech_pty_serve(&p->pty, 10 * MS))
+      break;
+  }
   return NULL;
 }
 
@@ -120,19 +136,20 @@ static const char *port_path(void)
 
 static void plug_in(plugged *p)
 {
+  emulator_init(&p->unit);
+  p->unit.motion = hand_held;
+  p->unit.context = p;
+  p->stopped = p->silent = p->held = false;
   assert_true(logitech_pty_open(&p->pty, &p->unit));
   unlink(port_path());
   assert_int_equal(symlink(p->pty.path, port_path()), 0);
-  p->stopped = false;
   pthread_mutex_init(&p->lock, NULL);
   assert_int_equal(pthread_create(&p->thread, NULL, live, p), 0);
 }
 
 static void unplug(plugged *p)
 {
-  pthread_mutex_lock(&p->lock);
-  p->stopped = true;
-  pthread_mutex_unlock(&p->lock);
+  set(p, &p->stopped, true);
   pthread_join(p->thread, NULL);
   logitech_pty_serve(&p->pty, 5 * MS); /* what the driver sent last */
   pthread_mutex_destroy(&p->lock);
@@ -140,19 +157,31 @@ static void unplug(plugged *p)
   logitech_pty_close(&p->pty);
 }
 
+#define HISTORY_MAX 256
+
 typedef struct history {
   int count;
-  stic_connection states[64];
-  char texts[64][128];
+  stic_connection states[HISTORY_MAX];
+  char texts[HISTORY_MAX][128];
 } history;
 
 static void remember(void *context, stic_connection state, const char *text)
 {
   history *h = context;
 
-  assert_true(h->count < 64);
+  assert_true(h->count < HISTORY_MAX);
+  assert_true(h->count == 0 || h->states[h->count - 1] != state); /* each change once */
   snprintf(h->texts[h->count], sizeof h->texts[0], "%s", text);
   h->states[h->count++] = state;
+}
+
+/* The first time of a state at or after `from`; fails if there is none. */
+static int find_state(const history *h, int from, stic_connection state)
+{
+  while (from < h->count && h->states[from] != state)
+    from++;
+  assert_true(from < h->count);
+  return from;
 }
 
 static stic_supervisor *open_supervised(history *h, int64_t give_up_ns)
@@ -169,12 +198,11 @@ static stic_supervisor *open_supervised(history *h, int64_t give_up_ns)
   return s;
 }
 
-/* Polls until a sample fits all of `flags` and `buttons`; others must be in order of time. */
-static stic_device_sample wait_for(stic_supervisor *s, unsigned flags, unsigned mask, uint32_t buttons,
-                                   int64_t limit_ns)
+/* Polls until the newest sample is tracked or not and has just these buttons. Samples must be in order of time. */
+static stic_device_sample wait_for(stic_supervisor *s, bool tracked, uint32_t buttons)
 {
   static int64_t last_ns;
-  const int64_t end_ns = stic_clock_ns() + limit_ns;
+  const int64_t end_ns = stic_clock_ns() + 60 * S;
   stic_device_sample samples[16];
 
   while (stic_clock_ns() < end_ns) {
@@ -184,11 +212,11 @@ static stic_device_sample wait_for(stic_supervisor *s, unsigned flags, unsigned 
     for (int i = 0; i < n; i++) {
       assert_true(samples[i].t_ns > last_ns);
       last_ns = samples[i].t_ns;
+      if (!(samples[i].flags & STIC_SAMPLE_TRACKED) == !tracked && samples[i].buttons == buttons)
+        return samples[i];
     }
-    if (n > 0 && (samples[n - 1].flags & mask) == flags && samples[n - 1].buttons == buttons)
-      return samples[n - 1];
   }
-  fail_msg("no such sample in %lld ms", (long long)(limit_ns / MS));
+  fail_msg("no %s sample with buttons %u", tracked ? "tracked" : "untracked", (unsigned)buttons);
   return samples[0];
 }
 
@@ -198,34 +226,33 @@ static void test_stale(void **state)
   history h;
   stic_supervisor *s;
   stic_device_sample sample;
-  int64_t gripped_ns;
+  int at;
 
   (void)state;
-  emulator_init(&p.unit);
-  p.unit.motion = hand_held;
-  p.unit.faults.stall_at = 25;
-  p.unit.faults.stall_ns = S;
   plug_in(&p);
   s = open_supervised(&h, 0);
   assert_int_equal(stic_supervisor_driver(s)->silence, STIC_SILENCE_STALE);
-  sample = wait_for(s, STIC_SAMPLE_TRACKED, STIC_SAMPLE_TRACKED, STIC_BUTTON_GRIP, 5 * S);
-  gripped_ns = stic_clock_ns();
-  sample = wait_for(s, 0, STIC_SAMPLE_TRACKED, 0, 2 * S);
+  wait_for(s, true, STIC_BUTTON_GRIP);
+  set(&p, &p.held, true);
+  set(&p, &p.silent, true);
+  sample = wait_for(s, false, 0);
   assert_int_equal(stic_supervisor_state(s), STIC_CONNECTION_STALE);
   assert_true(sample.position[1] == 4000 * 25.4e-6);
-  assert_true(stic_clock_ns() - gripped_ns < 700 * MS);
   /* It streams again with the button still held: that does not count. */
-  wait_for(s, STIC_SAMPLE_TRACKED, STIC_SAMPLE_TRACKED, 0, 3 * S);
-  assert_int_equal(stic_supervisor_state(s), STIC_CONNECTION_RUNNING);
+  set(&p, &p.silent, false);
   for (int i = 0; i < 10; i++)
-    wait_for(s, STIC_SAMPLE_TRACKED, STIC_SAMPLE_TRACKED, 0, S);
+    wait_for(s, true, 0);
+  assert_int_equal(stic_supervisor_state(s), STIC_CONNECTION_RUNNING);
+  set(&p, &p.held, false);
+  wait_for(s, true, STIC_BUTTON_GRIP);
   stic_supervisor_close(s);
   unplug(&p);
-  assert_int_equal(h.count, 5);
-  assert_true(h.states[0] == STIC_CONNECTION_RESETTING && h.states[1] == STIC_CONNECTION_SYNCING &&
-              h.states[2] == STIC_CONNECTION_RUNNING && h.states[3] == STIC_CONNECTION_STALE &&
-              h.states[4] == STIC_CONNECTION_RUNNING);
-  stic_test_contains(h.texts[2], "firmware 12");
+  at = find_state(&h, 0, STIC_CONNECTION_RESETTING);
+  at = find_state(&h, at, STIC_CONNECTION_SYNCING);
+  at = find_state(&h, at, STIC_CONNECTION_RUNNING);
+  stic_test_contains(h.texts[at], "firmware 12");
+  at = find_state(&h, at, STIC_CONNECTION_STALE);
+  find_state(&h, at, STIC_CONNECTION_RUNNING);
   assert_true(p.unit.sound_off && !p.unit.wrong_format && p.unit.refused == 0);
 }
 
@@ -247,53 +274,63 @@ static void count_recorded(int64_t at_ns, int *before, int *after)
   stic_raw_close(reader);
 }
 
+/* Polls until it is lost, and on for a retry or two, which fail without a word. */
+static void poll_while_gone(stic_supervisor *s, const history *h, stic_device_sample *last)
+{
+  const int64_t end_ns = stic_clock_ns() + 60 * S;
+  int64_t lost_ns = 0;
+  int told = 0;
+
+  while (lost_ns == 0 || stic_clock_ns() < lost_ns + 700 * MS) {
+    stic_device_sample samples[16];
+    const int n = stic_supervisor_poll(s, stic_clock_ns() + 20 * MS, samples, 16);
+
+    assert_true(n >= 0 && stic_clock_ns() < end_ns);
+    if (n > 0)
+      *last = samples[n - 1];
+    if (lost_ns == 0 && stic_supervisor_state(s) == STIC_CONNECTION_LOST) {
+      lost_ns = stic_clock_ns();
+      told = h->count;
+      stic_test_contains(stic_supervisor_error(s)->message, "unplugged");
+    } else if (lost_ns > 0) {
+      assert_int_equal(n, 0);
+    }
+  }
+  assert_int_equal(h->count, told);
+}
+
 static void test_unplug_and_replug(void **state)
 {
   plugged p;
   history h;
   stic_supervisor *s;
+  stic_device_sample last = {0};
   stic_device_counters counters;
   int64_t at_ns;
-  int before, after;
+  int before, after, at;
 
   (void)state;
-  emulator_init(&p.unit);
   plug_in(&p);
   s = open_supervised(&h, 0);
-  wait_for(s, STIC_SAMPLE_TRACKED, STIC_SAMPLE_TRACKED, STIC_BUTTON_GRIP, 5 * S);
+  wait_for(s, true, STIC_BUTTON_GRIP);
+  last.buttons = STIC_BUTTON_GRIP;
   unplug(&p);
+  poll_while_gone(s, &h, &last);
+  assert_false(last.flags & STIC_SAMPLE_TRACKED);
+  assert_int_equal(last.buttons, 0);
   at_ns = stic_clock_ns();
-  wait_for(s, 0, STIC_SAMPLE_TRACKED, 0, 2 * S);
-  print_message("unplugged: let go after %.1f ms\n", (double)(stic_clock_ns() - at_ns) / 1e6);
-  assert_true(stic_clock_ns() - at_ns < 50 * MS);
-  assert_int_equal(stic_supervisor_state(s), STIC_CONNECTION_LOST);
-  stic_test_contains(stic_supervisor_error(s)->message, "unplugged");
-  /* Retries fail silently; a poll ends in time all the same. */
-  while (stic_clock_ns() < at_ns + 1200 * MS) {
-    const int64_t from_ns = stic_clock_ns();
-    stic_device_sample sample;
-
-    assert_int_equal(stic_supervisor_poll(s, from_ns + 20 * MS, &sample, 1), 0);
-    assert_true(stic_clock_ns() - from_ns < 200 * MS);
-  }
-  emulator_init(&p.unit);
   plug_in(&p);
-  at_ns = stic_clock_ns();
-  wait_for(s, STIC_SAMPLE_TRACKED, STIC_SAMPLE_TRACKED, 0, 6 * S);
-  print_message("plugged in again: tracked after %.0f ms\n", (double)(stic_clock_ns() - at_ns) / 1e6);
-  wait_for(s, STIC_SAMPLE_TRACKED, STIC_SAMPLE_TRACKED, STIC_BUTTON_GRIP, 4 * S);
+  wait_for(s, true, 0);
+  wait_for(s, true, STIC_BUTTON_GRIP);
   counters = stic_supervisor_counters(s);
-  assert_int_equal(counters.reconnects, 1);
-  assert_int_equal(counters.bad_records, 0);
-  assert_true(counters.samples > 50);
+  assert_true(counters.reconnects >= 1 && counters.samples >= 4);
   stic_supervisor_close(s);
   unplug(&p);
   count_recorded(at_ns, &before, &after);
   print_message("recorded: %d records before, %d after\n", before, after);
-  assert_true(before > 20 && after > 20);    /* the first press comes after a second */
-  assert_true(h.count >= 4); /* how the start is seen depends on the machine's load */
-  assert_int_equal(h.states[h.count - 2], STIC_CONNECTION_LOST);
-  assert_int_equal(h.states[h.count - 1], STIC_CONNECTION_RUNNING);
+  assert_true(before > 0 && after > 0);
+  at = find_state(&h, find_state(&h, 0, STIC_CONNECTION_RUNNING), STIC_CONNECTION_LOST);
+  find_state(&h, at, STIC_CONNECTION_RUNNING);
 }
 
 static void test_lost_for_good(void **state)
@@ -301,19 +338,19 @@ static void test_lost_for_good(void **state)
   plugged p;
   history h;
   stic_supervisor *s;
-  stic_device_sample sample;
+  stic_device_sample samples[16];
   int result;
 
   (void)state;
-  emulator_init(&p.unit);
   plug_in(&p);
   s = open_supervised(&h, 800 * MS);
-  wait_for(s, STIC_SAMPLE_TRACKED, STIC_SAMPLE_TRACKED, 0, 5 * S);
+  wait_for(s, true, 0);
   unplug(&p);
-  while ((result = stic_supervisor_poll(s, stic_clock_ns() + 30 * MS, &sample, 1)) >= 0)
-    assert_true(h.count <= 4);
+  while ((result = stic_supervisor_poll(s, stic_clock_ns() + 30 * MS, samples, 16)) >= 0)
+    ;
   assert_int_equal(result, STIC_DRIVER_LOST);
   assert_int_equal(stic_supervisor_send(s, &(const stic_device_output){true}), STIC_DRIVER_LOST);
+  assert_int_equal(h.states[h.count - 1], STIC_CONNECTION_LOST);
   stic_supervisor_close(s);
 }
 
@@ -343,9 +380,14 @@ static void test_sample_driver(void **state)
   assert_int_equal(stic_supervisor_open("sample:rate=200", NULL, &s, &err), STIC_OK);
   stic_supervisor_describe(s, text, sizeof text);
   stic_test_contains(text, "200 a second");
-  for (const int64_t end_ns = stic_clock_ns() + 200 * MS; stic_clock_ns() < end_ns;)
-    count += stic_supervisor_poll(s, end_ns, samples, 4);
-  assert_in_range(count, 38, 42);
+  for (int64_t last_ns = 0; count < 40;) {
+    const int n = stic_supervisor_poll(s, stic_clock_ns() + S, samples, 4);
+
+    for (int i = 0; i < n; i++, count++) {
+      assert_true(count == 0 || samples[i].t_ns - last_ns == 5 * MS);
+      last_ns = samples[i].t_ns;
+    }
+  }
   assert_int_equal(stic_supervisor_state(s), STIC_CONNECTION_RUNNING);
   stic_supervisor_close(s);
 }
