@@ -10,11 +10,13 @@
 #include "session.h"
 #include "viewer.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define NEWS_ROOM 64
+#define NOT_GIVEN LLONG_MIN /* of --budget-ns */
 #define LOOK_NS                                                                                              \
   50000000 /* how often the main thread looks for news, and for a signal that just missed its wait */
 
@@ -217,13 +219,13 @@ static void tell_times(const stic_timing *t)
 
 static void tell_report(const run *r, const stic_live_report *report)
 {
-  const double seconds = (double)(stic_clock_ns() - r->session.started_ns) / 1e9;
+  /* From the first row to the last there is one interval less than rows. */
+  const double rate = report->rows > 1 ? (double)(report->rows - 1) / report->seconds : 0;
 
   stic_cli_say("%lld samples and %lld repeated frames in %.1f s, %.1f frames a second; target %d",
-               (long long)(report->rows - report->repeated), (long long)report->repeated, seconds,
-               (double)report->rows / seconds, STIC_TARGET_HZ);
-  if (report->rows > 0)
-    tell_times(r->session.timing);
+               (long long)(report->rows - report->repeated), (long long)report->repeated, report->seconds,
+               rate, STIC_TARGET_HZ);
+  tell_times(r->session.timing);
   stic_cli_say("%s; %zu samples and %zu rows at most waited", report->scheduling, report->samples_most,
                report->rows_most);
   if (report->lost_samples > 0)
@@ -246,13 +248,17 @@ static int finish(run *r, const stic_live_report *report, stic_error *err)
   if (stic_trace_finish(recording, err) != STIC_OK && code == STIC_OK)
     code = stic_cli_fail(err);
   count_all(r, report);
+  r->session.seconds = report->seconds;
   if (stic_session_commit(&r->session, report->scheduling, &pipe_closed, err) != STIC_OK && !pipe_closed)
     code = stic_cli_fail(err);
   if (report->picture_error.status != STIC_OK)
     code = stic_cli_fail(&report->picture_error);
   if (code == STIC_OK)
     code = r->view_code;
-  tell_report(r, report);
+  if (report->rows > 0)
+    tell_report(r, report);
+  else if (code == STIC_OK)
+    stic_cli_say("no sample came");
   return code;
 }
 
@@ -356,10 +362,23 @@ static void free_options(run_options *o)
   free(o->record);
 }
 
+/* -1: all is well. */
+static int settle_budget(long long budget_ns, stic_session_options *session)
+{
+  session->budget_ns = budget_ns == NOT_GIVEN ? STIC_AUTO_BUDGET_NS : budget_ns;
+  if (session->budget_ns < 1)
+    stic_cli_say("run: --budget-ns %lld: expected at least 1", budget_ns);
+  else if (budget_ns != NOT_GIVEN && !(session->accuracy && strcmp(session->accuracy, "auto") == 0))
+    stic_cli_say("run: --budget-ns goes with --accuracy auto only");
+  else
+    return -1;
+  return STIC_USAGE;
+}
+
 int stic_cmd_run(int argc, const char **argv)
 {
   run_options o;
-  long long budget_ns = STIC_AUTO_BUDGET_NS;
+  long long budget_ns = NOT_GIVEN;
   const struct poptOption table[] = {
     {"device", 'd', POPT_ARG_STRING, &o.device, 0,
      "The tracker, e.g. trace:file=hand.csv,speed=2,loop or trace:file=- (standard input)",
@@ -385,11 +404,8 @@ int stic_cmd_run(int argc, const char **argv)
     stic_cli_say("run: no device; expected --device NAME[:key=value,...]");
     code = STIC_USAGE;
   }
-  if (code < 0 && budget_ns < 1) {
-    stic_cli_say("run: --budget-ns %lld: expected at least 1", budget_ns);
-    code = STIC_USAGE;
-  }
-  o.session.budget_ns = budget_ns;
+  if (code < 0)
+    code = settle_budget(budget_ns, &o.session);
   if (code < 0)
     code = run_device(&o, args.positions[0]);
   stic_cli_args_free(&args);

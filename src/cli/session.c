@@ -214,7 +214,7 @@ static stic_status commit(stic_outfile **out, bool *pipe_closed, stic_error *err
 
 stic_status stic_session_commit(stic_session *s, const char *scheduling, bool *pipe_closed, stic_error *err)
 {
-  const double seconds = (double)(stic_clock_ns() - s->started_ns) / 1e9;
+  const double seconds = s->seconds > 0 ? s->seconds : (double)(stic_clock_ns() - s->started_ns) / 1e9;
   stic_status status = STIC_OK;
 
   *pipe_closed = false;

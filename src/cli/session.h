@@ -54,6 +54,7 @@ typedef struct stic_session {
   stic_timing *timing;        /* NULL: not asked for */
   const char *timing_path;
   int64_t started_ns;
+  double seconds;     /* for the timing; 0 (default): from the start to the commit */
   stic_result result; /* of the last step */
   int64_t rows;
 } stic_session;

@@ -268,6 +268,7 @@ static void make_report(const stic_live *live, stic_live_report *report)
     report->end = STIC_LIVE_OUTPUT_FAILED;
   report->picture_error = live->picture_maker.error;
   report->rows = live->solver.rows;
+  report->seconds = (double)(live->solver.end_ns - live->solver.first_ns) / 1e9;
   report->repeated = live->solver.repeated;
   report->lost_samples = live->reader.lost + (int64_t)stic_ring_count(live->samples);
   report->unseen_results = live->solver.unseen;

@@ -87,6 +87,7 @@ typedef struct stic_live_report {
   stic_error picture_error; /* the same */
   int64_t rows;             /* solved; all of them written unless output_error */
   int64_t repeated;         /* of them with the last pose again */
+  double seconds;           /* from the first sample to the last row */
   int64_t lost_samples;   /* given by the device when the solver's queue was full, or not solved at the end */
   int64_t unseen_results; /* not given to the pictures, whose queue was full */
   size_t samples_most, rows_most, pictures_most; /* that waited in the queues */

@@ -62,8 +62,9 @@ typedef struct live_solver {
   stic_sim *sim;
   bool own_time;
   bool begun;
-  live_sample last;    /* solved last */
-  int64_t deadline_ns; /* of the next frame */
+  live_sample last;                /* solved last */
+  int64_t deadline_ns;             /* of the next frame */
+  int64_t go_ns, first_ns, end_ns; /* the loop starts, the first sample is there, the last row is */
   int64_t rows, repeated, unseen;
   bool overflow; /* the queue of rows was full */
   stic_timing timing;

@@ -96,6 +96,7 @@ static bool solve(stic_live *live)
   if (frame_ns > STIC_FRAME_NS)
     stic_timing_list_miss(&s->timing, begin_ns - live->started_ns, frame_ns, "computing");
   s->rows++;
+  s->end_ns = end_ns;
   return true;
 }
 
@@ -108,11 +109,14 @@ static bool solve_sample(stic_live *live, const live_sample *sample)
   /* It was measured some time before it arrived; a repeat in between has the later time. */
   if (s->begun && s->last.sample.t_ns <= last_ns)
     s->last.sample.t_ns = last_ns + 1;
+  if (!s->begun)
+    s->first_ns = sample->arrived_ns;
   s->begun = true;
   s->deadline_ns = sample->arrived_ns + STIC_FRAME_NS;
   if (!solve(live))
     return false;
-  if (!s->own_time)
+  /* What came while the loop was still being made ready says nothing about the loop. */
+  if (!s->own_time && sample->arrived_ns >= s->go_ns)
     stic_timing_add(&s->timing, STIC_STAGE_LATENCY, stic_clock_ns() - sample->zero_ns - sample->sample.t_ns);
   return true;
 }
@@ -197,6 +201,7 @@ void *stic_live_solver_main(void *context)
   int64_t stop_ns = 0;
 
   live_await(&live->go);
+  live->solver.go_ns = stic_clock_ns();
   while (!is_over(live, &stop_ns) && turn(live))
     ;
   live_raise(&live->solver_done);

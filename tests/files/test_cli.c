@@ -285,6 +285,21 @@ static void test_auto(void **state)
          2, "does not go with it");
   expect(stic_test_program("run", scene, "--device", "x", "--accuracy", "auto", "--budget-ns", "0", NULL), 2,
          "expected at least 1");
+  expect(stic_test_program("run", scene, "--device", "x", "--budget-ns", "5000", NULL), 2,
+         "goes with --accuracy auto only");
+}
+
+/* One message, and no report of a loop that had nothing to do. */
+static void test_no_sample(void **state)
+{
+  char device[300];
+  const stic_test_run *run;
+
+  (void)state;
+  snprintf(device, sizeof device, "trace:file=%s", scene);
+  run = stic_test_program("run", scene, "--device", device, NULL);
+  expect(run, 3, "expected '# stiction-trace 1'");
+  assert_ptr_equal(strchr(run->err, '\n'), run->err + strlen(run->err) - 1);
 }
 
 static void test_standard_streams(void **state)
@@ -390,13 +405,21 @@ static void test_bench(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_help),        cmocka_unit_test(test_version),
-    cmocka_unit_test(test_usage),       cmocka_unit_test(test_bad_files),
-    cmocka_unit_test(test_outputs),     cmocka_unit_test(test_signal_replay),
-    cmocka_unit_test(test_signal_run),  cmocka_unit_test(test_run_and_replay),
-    cmocka_unit_test(test_auto),        cmocka_unit_test(test_standard_streams),
-    cmocka_unit_test(test_closed_pipe), cmocka_unit_test(test_run_frames),
-    cmocka_unit_test(test_frames),      cmocka_unit_test(test_bench),
+    cmocka_unit_test(test_help),
+    cmocka_unit_test(test_version),
+    cmocka_unit_test(test_usage),
+    cmocka_unit_test(test_bad_files),
+    cmocka_unit_test(test_outputs),
+    cmocka_unit_test(test_signal_replay),
+    cmocka_unit_test(test_signal_run),
+    cmocka_unit_test(test_run_and_replay),
+    cmocka_unit_test(test_auto),
+    cmocka_unit_test(test_no_sample),
+    cmocka_unit_test(test_standard_streams),
+    cmocka_unit_test(test_closed_pipe),
+    cmocka_unit_test(test_run_frames),
+    cmocka_unit_test(test_frames),
+    cmocka_unit_test(test_bench),
   };
 
   return cmocka_run_group_tests(tests, set_up, stic_test_clean_up);

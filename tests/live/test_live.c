@@ -180,6 +180,7 @@ static void every_row_arrives_and_can_be_solved_again(void **state)
 /* Two samples a second: the frames between have the last one's pose and times of their own. */
 static void a_silent_device_is_repeated(void **state)
 {
+  const int64_t start_ns = stic_clock_ns();
   stic_live_report report;
   bench b;
   int repeats = 0;
@@ -193,6 +194,9 @@ static void a_silent_device_is_repeated(void **state)
     repeats += memcmp(b.samples[i].position, b.samples[i - 1].position, sizeof b.samples[i].position) == 0;
   assert_true(report.repeated > 10);
   assert_int_equal(report.repeated, repeats);
+  /* No less than between the first sample and the last frame, and nothing of the time to get ready. */
+  assert_true(report.seconds * 1e9 > (double)(b.samples[b.rows - 2].t_ns - 100 * MS));
+  assert_true(report.seconds * 1e9 < (double)(stic_clock_ns() - start_ns));
   check_rows(&b);
   end(&b);
 }
