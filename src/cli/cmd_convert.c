@@ -9,6 +9,7 @@
 #include "../io/trace_csv.h"
 #include "cli.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -57,8 +58,10 @@ static bool is_letter_and_colon(const char *text, size_t length)
   return length >= 2 && text[0] >= 'A' && text[0] <= 'Z' && text[1] == ':';
 }
 
-static stic_status refuse_format(const char *path, stic_error *err)
+static stic_status refuse_format(const char *path, stic_line_status last, int error, stic_error *err)
 {
+  if (last == STIC_LINE_FAILED)
+    return stic_error_set(err, STIC_BAD_INPUT, path, 0, "cannot read: %s", strerror(error));
   return stic_error_set(err, STIC_BAD_INPUT, path, 1,
                         "neither a raw recording nor a TUM or EuRoC pose file; say which by --from");
 }
@@ -72,6 +75,7 @@ static stic_status recognize(const char *path, format *found, stic_error *err)
   const char *text = "";
   size_t length = 0;
   const stic_status opened = stic_line_reader_open(path, &lines, err);
+  int error;
 
   if (opened != STIC_OK)
     return opened;
@@ -88,11 +92,12 @@ static stic_status recognize(const char *path, format *found, stic_error *err)
            (status == STIC_LINE_WAIT || (status == STIC_LINE_READ && (length == 0 || text[0] == '#'))));
   if (*found == FORMAT_AUTO && status == STIC_LINE_READ && is_letter_and_colon(text, length))
     *found = FORMAT_HID;
+  error = errno;
   stic_line_reader_close(lines);
   if (*found != FORMAT_AUTO)
     return STIC_OK;
   if (!stic_pose_recognize(path, &pose))
-    return refuse_format(path, err);
+    return refuse_format(path, status, error, err);
   *found = pose == STIC_POSE_TUM ? FORMAT_TUM : FORMAT_EUROC;
   return STIC_OK;
 }
@@ -309,8 +314,9 @@ static void tell(const conversion *c)
                  c->skipped == 1 ? "" : "s", text);
   }
   stic_cli_say(
-    "%lld samples, %lld with the grip pressed, %lld not tracked; %lld before the first known pose left out",
-    (long long)c->samples, (long long)c->gripped, (long long)c->lost, (long long)c->unknown);
+    "%lld sample%s, %lld with the grip pressed, %lld not tracked; %lld before the first known pose left out",
+    (long long)c->samples, c->samples == 1 ? "" : "s", (long long)c->gripped, (long long)c->lost,
+    (long long)c->unknown);
   if (c->gripped == 0)
     stic_cli_say("the grip is never pressed: a scene with hold: button will not take the object%s",
                  c->options->device || c->options->grip ? "" : "; pose files: --grip");

@@ -1,6 +1,7 @@
 /* stiction monitor: a tracker live in the terminal. */
 #include "../../drivers/connection.h"
 #include "../../drivers/motion/tracker_yaml.h"
+#include "../../drivers/mouse/mouse_driver.h"
 #include "../error.h"
 #include "../io/timing.h"
 #include "cli.h"
@@ -134,8 +135,7 @@ static void take_samples(watching *w, stic_device_sample *samples, int count)
   for (int i = 0; i < count; i++) {
     const uint32_t bits = samples[i].buttons;
 
-    /* A trace is a hand in the room already. */
-    if (!stic_supervisor_driver(w->device)->own_time)
+    if (!stic_supervisor_driver(w->device)->in_room)
       stic_tracker_apply(&w->tracker, &samples[i]);
     stic_monitor_add(&w->monitor, &samples[i], bits);
   }
@@ -254,7 +254,10 @@ static int end(watching *w, int result)
     put_text(w, w->page);
   if (result == STIC_DRIVER_BAD_DATA)
     return stic_cli_fail(&err);
-  return result == STIC_DRIVER_LOST ? STIC_NO_DEVICE : STIC_OK;
+  if (result != STIC_DRIVER_LOST)
+    return STIC_OK;
+  stic_cli_say("the device is lost%s%s", err.message[0] ? ": " : "", err.message);
+  return STIC_NO_DEVICE;
 }
 
 static int run(const options *o)
@@ -274,7 +277,10 @@ static int run(const options *o)
   status = o->tracker ? stic_tracker_read(o->tracker, true, &w->settings, &err) : STIC_OK;
   if (status == STIC_OK)
     status = stic_supervisor_open(o->device, &supervised, &w->device, &err);
+  if (status == STIC_OK && stic_supervisor_driver(w->device) == &stic_mouse_driver)
+    status = stic_error_set(&err, STIC_USAGE, NULL, 0, "device mouse: it moves in the window of run --view");
   if (status != STIC_OK) {
+    stic_supervisor_close(w->device);
     free(w);
     return stic_cli_fail(&err);
   }

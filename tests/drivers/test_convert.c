@@ -164,6 +164,7 @@ static void test_refused(void **state)
   expect(stic_test_program("convert", "--device", "hydra", serial, out, NULL), 2,
          "does not decode serial recordings");
   expect(stic_test_program("convert", "--from", "tum", "/nonexistent", out, NULL), 3, "No such file");
+  expect(stic_test_program("convert", "/", out, NULL), 3, "/: cannot read: Is a directory");
   expect(stic_test_program("convert", pose, "/nonexistent/out", NULL), 5, "");
 }
 

@@ -228,6 +228,7 @@ def plain():
     done = subprocess.run([PROGRAM, "monitor", "--device", f"trace:file={trace}"], capture_output=True, text=True, timeout=60)
     check("a bad trace ends with 3 and its line", done.returncode == 3 and "t.csv:4: " in done.stderr, done.stderr)
     for arguments, code, words in (((), 2, "no device"), (("--device", "sample", "--seconds", "-1"), 2, "--seconds is -1"),
+                                   (("--device", "mouse"), 2, "in the window of run --view"),
                                    (("--device", "logitech:port=/nonexistent"), 4, "No such file")):
         done = subprocess.run([PROGRAM, "monitor", *arguments], capture_output=True, text=True, timeout=60)
         check(f"refused: {words}", done.returncode == code and words in done.stderr, done.stderr)
