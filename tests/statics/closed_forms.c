@@ -645,6 +645,69 @@ static void equal_friction_vertex(void **state)
   }
 }
 
+/* Foot on the floor, top on the wall, mu_s = mu_d on both: one degree of freedom, the angle. Sliding, both contacts are
+ * at mu N against their ways, so two forces of known direction and the spring balance in three equations. */
+static void check_sliding_ladder(const rig *g, double mu, double way)
+{
+  const stic_result *r = &g->r;
+  double l = g->scene.vertices[1][0], c = cos(r->theta), s = sin(r->theta);
+  double held[2] = {r->x + c * g->scene.holding_point[0], r->y + s * g->scene.holding_point[0]};
+  double pull[2] = {g->scene.stiffness * (g->x - held[0]), g->scene.stiffness * (g->y - held[1])};
+  double size = hypot(pull[0], pull[1]), moment;
+  /* way > 0: it slides down, the foot to the left, the top downwards */
+  double floor_n = (-pull[1] - way * mu * pull[0]) / (1 + mu * mu),
+         wall_n = (pull[0] - way * mu * pull[1]) / (1 + mu * mu);
+  assert_int_equal(r->state, STIC_TWO_VERTEX);
+  CLOSE(r->y / l, 0, 1e-12);
+  CLOSE((r->x + l * c) / l, 0, 1e-12);
+  CLOSE(r->contacts[0].normal / size, floor_n / size, 1e-9);
+  CLOSE(r->contacts[1].normal / size, wall_n / size, 1e-9);
+  CLOSE(fabs(r->contacts[0].friction) / size, mu * floor_n / size, 1e-9);
+  CLOSE(fabs(r->contacts[1].friction) / size, mu * wall_n / size, 1e-9);
+  moment = g->scene.rotational_stiffness * (g->phi - r->theta) +
+           g->scene.holding_point[0] * (c * pull[1] - s * pull[0]) + l * (c * way * mu * wall_n + s * wall_n);
+  CLOSE(moment / (size * l), 0, 1e-9);
+}
+
+static void equal_friction_ladder(void **state)
+{
+  static const double mus[] = {0, 0.1, 0.2};
+  (void)state;
+  FOR_EACH_VARIANT(w)
+  for (size_t k = 0; k < sizeof mus / sizeof mus[0]; k++) {
+    rig g;
+    double l = w->scale, start = 1, mu = mus[k], theta;
+    start_ladder(&g, w, mu, mu, 0.5, start);
+    rig_end(&g);
+    for (int i = 0; i < 2; i++)
+      g.scene.surfaces[i].friction.mu_dynamic = mu;
+    g.scene.rotational_stiffness = w->k * 0.004 * l * l;
+    rig_start(&g);
+    rig_to(&g, -0.25 * l * cos(start) + 0.05 * l, 0.25 * l * sin(start) - 0.05 * l, start);
+    for (int i = 1; i <= 40; i++) { /* down */
+      double a = start - 0.01 * i;
+      rig_to(&g, -0.25 * l * cos(a) + 0.05 * l, 0.25 * l * sin(a) - 0.05 * l, a - 0.3);
+      if (i > 20 || mu == 0)
+        check_sliding_ladder(&g, mu, 1);
+    }
+    theta = g.r.theta;
+    for (int i = 0; i < 5; i++) {
+      rig_to(&g, g.x, g.y, g.phi + 1e-4);
+      if (mu > 0)
+        CLOSE(g.r.theta, theta, 0); /* back: stuck, to the bit */
+      else
+        check_sliding_ladder(&g, mu, -1);
+    }
+    for (int i = 1; i <= 40; i++) { /* and up */
+      double a = start - 0.4 + 0.01 * i;
+      rig_to(&g, -0.25 * l * cos(a) + 0.05 * l, 0.25 * l * sin(a) - 0.05 * l, a + 0.5);
+      if (i > 20 || mu == 0)
+        check_sliding_ladder(&g, mu, -1);
+    }
+    rig_end(&g);
+  }
+}
+
 static void frictionless(void **state)
 {
   (void)state;
@@ -922,6 +985,7 @@ int main(void)
     cmocka_unit_test(opening_located),
     cmocka_unit_test(equal_friction_edge),
     cmocka_unit_test(equal_friction_vertex),
+    cmocka_unit_test(equal_friction_ladder),
     cmocka_unit_test(frictionless),
     cmocka_unit_test(no_rotational_stiffness),
     cmocka_unit_test(hand_on_anchor),
