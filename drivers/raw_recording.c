@@ -25,7 +25,6 @@ struct stic_raw_reader {
   bool lenient;
   void (*report)(void *context, const stic_error *problem); /* may be NULL */
   void *report_context;
-  int64_t skipped;
   bool held; /* `record` is to be given out again */
   stic_raw_record record;
   stic_raw_kind kind;
@@ -59,11 +58,6 @@ void stic_raw_be_lenient(stic_raw_reader *reader, void (*report)(void *context, 
   reader->lenient = true;
   reader->report = report;
   reader->report_context = context;
-}
-
-int64_t stic_raw_skipped(const stic_raw_reader *reader)
-{
-  return reader->skipped;
 }
 
 void stic_raw_close(stic_raw_reader *reader)
@@ -380,7 +374,6 @@ static bool pass_over(stic_raw_reader *r, const stic_error *problem)
 {
   if (!r->lenient || !r->kind_known)
     return false;
-  r->skipped++;
   if (r->report)
     r->report(r->report_context, problem);
   return true;

@@ -55,7 +55,6 @@ void stic_raw_close(stic_raw_reader *reader); /* NULL allowed */
 /* From now on bad lines after the first good one are passed over; `report` (may be NULL) is told about each. */
 void stic_raw_be_lenient(stic_raw_reader *reader, void (*report)(void *context, const stic_error *problem),
                          void *context);
-int64_t stic_raw_skipped(const stic_raw_reader *reader); /* lines passed over so far */
 
 /* The next record. At most one read() in a call. A last line without its end is dropped. A recording
  * without any record is bad. Real-time: no. */

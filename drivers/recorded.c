@@ -171,11 +171,6 @@ stic_device_counters stic_recorded_counters(const stic_recorded *r)
   return stic_supervisor_counters(r->supervisor);
 }
 
-int64_t stic_recorded_skipped(const stic_recorded *r)
-{
-  return stic_raw_skipped(r->reader);
-}
-
 const stic_device *stic_recorded_device(const stic_recorded *r)
 {
   return r->device;

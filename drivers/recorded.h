@@ -29,7 +29,6 @@ int stic_recorded_next(stic_recorded *recorded, stic_device_sample *samples, int
 const stic_error *stic_recorded_error(const stic_recorded *recorded);
 const stic_driver *stic_recorded_driver(const stic_recorded *recorded);
 stic_device_counters stic_recorded_counters(const stic_recorded *recorded);
-int64_t stic_recorded_skipped(const stic_recorded *recorded); /* bad lines passed over so far */
 /* The device inside, for its `raw`. */
 const stic_device *stic_recorded_device(const stic_recorded *recorded);
 void stic_recorded_describe(const stic_recorded *recorded, char *out, size_t out_size);

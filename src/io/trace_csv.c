@@ -25,7 +25,7 @@ static const char *const column_names[COLUMNS] = {"t", "x", "y", "z", "qx", "qy"
 struct stic_trace_reader {
   stic_line_reader *lines;
   stic_trace_options options;
-  bool format_seen, header_allowed, cut;
+  bool format_seen, header_allowed;
   int64_t samples, skipped;
   int64_t last_t_ns; /* of the last sample, if there is one */
 };
@@ -219,7 +219,6 @@ stic_trace_status stic_trace_next(stic_trace_reader *r, stic_sample *sample, sti
                      strerror(errno));
       return STIC_TRACE_BAD;
     case STIC_LINE_UNFINISHED:
-      r->cut = true;
       if (r->samples == 0) /* an error follows */
         continue;
       BAD(r, &problem, "the last line has no end and is dropped");
@@ -266,11 +265,6 @@ int stic_trace_fd(const stic_trace_reader *reader)
 int64_t stic_trace_skipped(const stic_trace_reader *reader)
 {
   return reader->skipped;
-}
-
-bool stic_trace_cut(const stic_trace_reader *reader)
-{
-  return reader->cut;
 }
 
 /* ---- writing ----------------------------------------------------------------------------- */

@@ -46,9 +46,8 @@ stic_trace_status stic_trace_next(stic_trace_reader *reader, stic_sample *sample
 bool stic_trace_ready(const stic_trace_reader *reader);
 /* For poll(). */
 int stic_trace_fd(const stic_trace_reader *reader);
-/* Lines passed over so far (lenient), and whether an unfinished last line was dropped. */
+/* Lines passed over so far (lenient). */
 int64_t stic_trace_skipped(const stic_trace_reader *reader);
-bool stic_trace_cut(const stic_trace_reader *reader);
 
 /* ---- writing ----------------------------------------------------------------------------- */
 
