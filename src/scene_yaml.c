@@ -427,14 +427,17 @@ static void read_text(reading *r, const char *text, size_t length)
   stic_yaml_end(&r->yaml);
 }
 
-static void read_file(reading *r)
+static void read_file(reading *r, char **kept)
 {
   size_t length;
   char *text = stic_yaml_read_file(&r->yaml, r->path, &length);
 
   if (text)
     read_text(r, text, length);
-  free(text);
+  if (kept)
+    *kept = text;
+  else
+    free(text);
 }
 
 /* ---- overrides --------------------------------------------------------------------------- */
@@ -690,7 +693,7 @@ static void apply_overrides(reading *r, const stic_override *overrides, int coun
 }
 
 stic_status stic_scene_read_all(const char *path, const stic_override *overrides, int override_count,
-                                stic_scene *scene, stic_report *report, void *context)
+                                stic_scene *scene, char **text, stic_report *report, void *context)
 {
   reading *r = calloc(1, sizeof *r);
   stic_scene *draft = malloc(sizeof *draft);
@@ -698,6 +701,8 @@ stic_status stic_scene_read_all(const char *path, const stic_override *overrides
   stic_error no_memory;
 
   assert(path && scene && report && (overrides || override_count == 0));
+  if (text)
+    *text = NULL;
   if (!r || !draft) {
     stic_error_set(&no_memory, STIC_NO_MEMORY, path, 0, "out of memory");
     report(context, false, &no_memory);
@@ -712,7 +717,7 @@ stic_status stic_scene_read_all(const char *path, const stic_override *overrides
   r->report = report;
   r->context = context;
   r->friction.mu_static = r->friction.mu_dynamic = NAN;
-  read_file(r);
+  read_file(r, text);
   /* After a text that is no scene at all nothing more can be said. */
   if (r->origins[STIC_KEY_ROOT].given && !r->origins[STIC_KEY_ROOT].bad) {
     apply_overrides(r, overrides, override_count);
@@ -748,10 +753,16 @@ static void keep_first(void *context, bool warning, const stic_error *problem)
     *first->err = *problem;
 }
 
-stic_status stic_scene_read(const char *path, const stic_override *overrides, int override_count,
-                            stic_scene *scene, stic_error *err)
+stic_status stic_scene_read_text(const char *path, const stic_override *overrides, int override_count,
+                                 stic_scene *scene, char **text, stic_error *err)
 {
   first_error first = {err, false};
 
-  return stic_scene_read_all(path, overrides, override_count, scene, keep_first, &first);
+  return stic_scene_read_all(path, overrides, override_count, scene, text, keep_first, &first);
+}
+
+stic_status stic_scene_read(const char *path, const stic_override *overrides, int override_count,
+                            stic_scene *scene, stic_error *err)
+{
+  return stic_scene_read_text(path, overrides, override_count, scene, NULL, err);
 }

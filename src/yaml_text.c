@@ -268,7 +268,8 @@ char *stic_yaml_read_file(const stic_yaml *y, const char *path, size_t *length)
     close(fd);
   if (!good) {
     free(text);
-    text = NULL;
+    return NULL;
   }
+  text[*length] = '\0';
   return text;
 }

@@ -20,7 +20,8 @@ typedef struct stic_yaml {
   size_t length;
 } stic_yaml;
 
-/* Reads a whole file; NULL after telling why not. To be freed. */
+/* Reads a whole file, once, as it may be a pipe; NULL after telling why not. Ends with a zero byte and has no other. To
+ * be freed. */
 char *stic_yaml_read_file(const stic_yaml *yaml, const char *path, size_t *length);
 
 /* Loads the first document of a text, which must stay until stic_yaml_end(); false after telling why not, with

@@ -397,12 +397,12 @@ static void complete(reading *r)
   }
 }
 
-stic_status stic_tracker_read(const char *path, bool required, stic_tracker_settings *settings,
-                              stic_error *err)
+stic_status stic_tracker_read(const char *path, const char *text, bool required,
+                              stic_tracker_settings *settings, stic_error *err)
 {
   reading r;
-  char *text;
-  size_t length;
+  char *own = NULL;
+  size_t length = text ? strlen(text) : 0;
 
   assert(path && settings);
   memset(&r, 0, sizeof r);
@@ -413,10 +413,11 @@ stic_status stic_tracker_read(const char *path, bool required, stic_tracker_sett
   r.settings = settings;
   r.err = err;
   stic_tracker_settings_init(settings);
-  text = stic_yaml_read_file(&r.yaml, path, &length);
+  if (!text)
+    text = own = stic_yaml_read_file(&r.yaml, path, &length);
   if (text)
     read_text(&r, text, length, required);
-  free(text);
+  free(own);
   if (r.status == STIC_OK)
     complete(&r);
   else

@@ -34,12 +34,12 @@ typedef struct stic_tracker_settings {
 
 void stic_tracker_settings_init(stic_tracker_settings *settings);
 
-/* Reads the section of a scene or tracker file; `*settings` has the defaults where it says nothing, also if there
+/* Reads the section of a scene or tracker file, or of `text` if that is not NULL: what was in the file; `*settings` has the defaults where it says nothing, also if there
  * is no section and `required` is false. The first problem is told with its line. Other keys of the file are
  * for the reader of scenes. Errors: STIC_BAD_INPUT, STIC_NO_MEMORY; `*settings` is as after init then. Real-time:
  * no. */
-stic_status stic_tracker_read(const char *path, bool required, stic_tracker_settings *settings,
-                              stic_error *err);
+stic_status stic_tracker_read(const char *path, const char *text, bool required,
+                              stic_tracker_settings *settings, stic_error *err);
 
 /* What a device's samples go through on their way to the solver. */
 typedef struct stic_tracker {

@@ -435,5 +435,5 @@ int stic_bench_devices(const stic_bench_devices_options *o)
   free(b);
   if (status != STIC_OK)
     return stic_cli_fail(&err);
-  return stic_cli_signal() != 0 ? STIC_EXIT_SIGNAL + stic_cli_signal() : (int)stic_cli_flush();
+  return stic_cli_signal() != 0 ? STIC_EXIT_SIGNAL + stic_cli_signal() : STIC_OK;
 }

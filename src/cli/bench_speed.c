@@ -481,5 +481,5 @@ int stic_bench_speed(bool quick)
     return STIC_EXIT_SIGNAL + stic_cli_signal();
   if (status != STIC_OK)
     return stic_cli_fail(&err);
-  return (int)stic_cli_flush();
+  return STIC_OK;
 }

@@ -532,7 +532,7 @@ static int finish(bench *b, stic_status status)
   }
   if (b->csv && stic_outfile_commit(b->csv, &b->err) != STIC_OK)
     return stic_cli_fail(&b->err);
-  return (int)stic_cli_flush();
+  return STIC_OK;
 }
 
 int stic_bench_trade(const stic_trade_options *options)

@@ -1,10 +1,12 @@
 #include "cli.h"
 
 #include "../error.h"
+#include "../io/outfile.h"
 
 #include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,9 +25,19 @@ static void print_problem(const char *kind, const stic_error *err)
   fprintf(stderr, "%s%s%s\n", err->file[0] ? "" : "stiction: ", kind, text);
 }
 
+/* The errno of a write that failed long ago is lost. */
+static bool reader_has_left(void)
+{
+  struct pollfd out = {STDOUT_FILENO, POLLOUT, 0};
+
+  return poll(&out, 1, 0) == 1 && (out.revents & (POLLERR | POLLHUP)) != 0;
+}
+
 int stic_cli_fail(const stic_error *err)
 {
   assert(err->status != STIC_OK);
+  if (err->status == STIC_CANNOT_WRITE && strcmp(err->file, STIC_OUTFILE_STDOUT) == 0 && reader_has_left())
+    return STIC_EXIT_PIPE;
   print_problem("", err);
   return (int)err->status;
 }
@@ -46,11 +58,16 @@ void stic_cli_say(const char *format, ...)
   va_end(args);
 }
 
-stic_status stic_cli_flush(void)
+int stic_cli_flush(void)
 {
-  if ((fflush(stdout) == 0 && !ferror(stdout)) || errno == EPIPE)
+  const int problem = fflush(stdout) == 0 ? 0 : errno;
+
+  if (problem == 0 && !ferror(stdout))
     return STIC_OK;
-  stic_cli_say("cannot write to standard output: %s", strerror(errno));
+  if (reader_has_left())
+    return STIC_EXIT_PIPE;
+  stic_cli_say(STIC_OUTFILE_STDOUT ": cannot write%s%s", problem ? ": " : "",
+               problem ? strerror(problem) : "");
   return STIC_CANNOT_WRITE;
 }
 
@@ -67,7 +84,7 @@ static int show_help(const stic_cli_usage *usage, poptContext popt)
 {
   poptPrintHelp(popt, stdout, 0);
   printf("\n%s", usage->about);
-  return (int)stic_cli_flush();
+  return STIC_OK;
 }
 
 static int take_arguments(const stic_cli_usage *usage, stic_cli_args *args, const int *help)

@@ -8,6 +8,7 @@
 #include "../stiction.h"
 
 #define STIC_EXIT_SIGNAL 128 /* plus the signal's number */
+#define STIC_EXIT_PIPE (STIC_EXIT_SIGNAL + SIGPIPE)
 
 /* One command: `argv[0]` is its name. Returns the exit code. */
 int stic_cmd_replay(int argc, const char **argv);
@@ -23,14 +24,16 @@ int stic_cmd_devices(int argc, const char **argv);
 
 /* ---- messages (standard error) ------------------------------------------------------------ */
 
-/* Prints an error and returns its status, which is the exit code. */
+/* Prints an error and returns its status, which is the exit code. Quiet is only that the reader of standard output has
+ * left: STIC_EXIT_PIPE. */
 int stic_cli_fail(const stic_error *err);
 void stic_cli_warn(const stic_error *problem);
 /* "stiction: ..." in one line. */
 void stic_cli_say(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* Flushes standard output; a reader that has left is no fault. STIC_CANNOT_WRITE after a message. */
-stic_status stic_cli_flush(void);
+/* Flushes standard output, as main() does after each command: STIC_OK, STIC_EXIT_PIPE, or STIC_CANNOT_WRITE after a
+ * message. */
+int stic_cli_flush(void);
 
 /* ---- command line ------------------------------------------------------------------------ */
 

@@ -41,12 +41,12 @@ static void on_finding(void *context, bool warning, const stic_error *problem)
 }
 
 /* The scene's section tracker; a line that the scene's own reader has told about is not told again. */
-static void check_tracker(const char *path, findings *f)
+static void check_tracker(const char *path, const char *text, findings *f)
 {
   stic_tracker_settings settings;
   stic_error err;
 
-  if (stic_tracker_read(path, false, &settings, &err) == STIC_OK)
+  if (stic_tracker_read(path, text, false, &settings, &err) == STIC_OK)
     return;
   for (int i = 0; i < f->line_count; i++) {
     if (f->lines[i] == err.line)
@@ -93,6 +93,7 @@ static int check_files(const stic_cli_args *args, char **set)
   findings f = {0, 0, STIC_OK, 0, {0}};
   stic_scene *scene = malloc(sizeof *scene);
   stic_error err;
+  char *text = NULL;
   bool scene_good;
 
   if (!scene || stic_cli_overrides(set, &overrides, &override_count, &err) != STIC_OK) {
@@ -102,10 +103,11 @@ static int check_files(const stic_cli_args *args, char **set)
     free(scene);
     return stic_cli_fail(&err);
   }
-  scene_good =
-    stic_scene_read_all(args->positions[0], overrides, override_count, scene, on_finding, &f) == STIC_OK;
-  if (stic_cli_signal() == 0)
-    check_tracker(args->positions[0], &f);
+  scene_good = stic_scene_read_all(args->positions[0], overrides, override_count, scene, &text, on_finding,
+                                   &f) == STIC_OK;
+  if (text && stic_cli_signal() == 0)
+    check_tracker(args->positions[0], text, &f);
+  free(text);
   if (args->position_count > 1 && stic_cli_signal() == 0)
     check_trace(args->positions[1], scene_good ? scene : NULL, &f);
   free(overrides);
@@ -114,8 +116,6 @@ static int check_files(const stic_cli_args *args, char **set)
     return STIC_EXIT_SIGNAL + stic_cli_signal();
   printf("%lld error%s, %lld warning%s\n", (long long)f.errors, f.errors == 1 ? "" : "s",
          (long long)f.warnings, f.warnings == 1 ? "" : "s");
-  if (stic_cli_flush() != STIC_OK)
-    return STIC_CANNOT_WRITE;
   if (f.worst != STIC_OK)
     return (int)f.worst;
   return f.errors > 0 ? STIC_FAILED : STIC_OK;

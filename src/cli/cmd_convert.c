@@ -290,7 +290,7 @@ static stic_status convert(conversion *c, const char *in, const char *out, stic_
     status = check_options(o, from, err);
   stic_tracker_settings_init(&settings);
   if (status == STIC_OK && o->tracker)
-    status = stic_tracker_read(o->tracker, true, &settings, err);
+    status = stic_tracker_read(o->tracker, NULL, true, &settings, err);
   if (status == STIC_OK)
     status = stic_outfile_open(out, &c->out, err);
   if (status != STIC_OK)

@@ -225,7 +225,7 @@ static int show(const char *root, bool drivers, bool json)
     print_drivers(drivers);
   }
   free(f);
-  return code == STIC_OK ? (int)stic_cli_flush() : code;
+  return code;
 }
 
 int stic_cmd_devices(int argc, const char **argv)

@@ -339,7 +339,7 @@ static int print_json(const explanation *e)
   }
   if (!failed)
     putchar('\n');
-  return (int)stic_cli_flush();
+  return STIC_OK;
 }
 
 /* ------------------------------------------------------------------------------------------ */
@@ -389,7 +389,7 @@ static int explain(const stic_cli_args *args, const explain_options *o)
     code = print_json(e);
   } else {
     say_all(e);
-    code = (int)stic_cli_flush();
+    code = STIC_OK;
   }
   free(e);
   return code;

@@ -3,6 +3,7 @@
 #include "../../drivers/motion/tracker_yaml.h"
 #include "../../drivers/mouse/mouse_driver.h"
 #include "../error.h"
+#include "../io/outfile.h"
 #include "../io/timing.h"
 #include "cli.h"
 #include "monitor.h"
@@ -44,12 +45,13 @@ typedef struct watching {
   struct termios found; /* of standard input, if `keys` */
   bool keys;
   bool quit;
+  int failure; /* errno of a write, 0: none */
   char page[STIC_MONITOR_PAGE_MAX];
 } watching;
 
 /* ---- the terminal ------------------------------------------------------------------------ */
 
-/* What a terminal that goes away or a pipe that closes says is no fault of ours: the end. */
+/* A failure ends it; false then. */
 static bool put(watching *w, const char *text, size_t length)
 {
   while (length > 0) {
@@ -58,6 +60,7 @@ static bool put(watching *w, const char *text, size_t length)
     if (n < 0 && errno == EINTR)
       continue;
     if (n <= 0) {
+      w->failure = n < 0 ? errno : ENOSPC;
       w->quit = true;
       return false;
     }
@@ -254,10 +257,14 @@ static int end(watching *w, int result)
     put_text(w, w->page);
   if (result == STIC_DRIVER_BAD_DATA)
     return stic_cli_fail(&err);
-  if (result != STIC_DRIVER_LOST)
+  if (result == STIC_DRIVER_LOST) {
+    stic_cli_say("the device is lost%s%s", err.message[0] ? ": " : "", err.message);
+    return STIC_NO_DEVICE;
+  }
+  if (w->failure == 0 || stic_cli_signal() != 0)
     return STIC_OK;
-  stic_cli_say("the device is lost%s%s", err.message[0] ? ": " : "", err.message);
-  return STIC_NO_DEVICE;
+  stic_error_set(&err, STIC_CANNOT_WRITE, STIC_OUTFILE_STDOUT, 0, "cannot write: %s", strerror(w->failure));
+  return stic_cli_fail(&err);
 }
 
 static int run(const options *o)
@@ -274,7 +281,7 @@ static int run(const options *o)
   }
   w->options = o;
   stic_tracker_settings_init(&w->settings);
-  status = o->tracker ? stic_tracker_read(o->tracker, true, &w->settings, &err) : STIC_OK;
+  status = o->tracker ? stic_tracker_read(o->tracker, NULL, true, &w->settings, &err) : STIC_OK;
   if (status == STIC_OK)
     status = stic_supervisor_open(o->device, &supervised, &w->device, &err);
   if (status == STIC_OK && stic_supervisor_driver(w->device) == &stic_mouse_driver)

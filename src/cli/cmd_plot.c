@@ -231,8 +231,6 @@ int stic_cmd_plot(int argc, const char **argv)
   if (code < 0) {
     r.settings.keep = o.keep != 0;
     code = plot_log(&r, args.positions[0], &err);
-    if (code == STIC_OK)
-      code = (int)stic_cli_flush();
   }
   stic_plot_destroy(r.plot);
   stic_cli_args_free(&args);

@@ -54,18 +54,15 @@ static void movie_failed(replay *r, const stic_error *err)
   r->movie = NULL;
 }
 
-/* Also after a failed write, which the commit tells and cleans up. A reader of standard output that
- * has left gets no message. */
+/* Also after a failed write, which the commit tells and cleans up. */
 static int finish(replay *r, stic_error *err)
 {
-  bool pipe_closed;
-
   if (r->movie && stic_movie_finish(r->movie, err) != STIC_OK)
     movie_failed(r, err);
   if (stic_cli_signal() != 0)
     return STIC_EXIT_SIGNAL + stic_cli_signal();
-  if (stic_session_commit(&r->session, "", &pipe_closed, err) != STIC_OK)
-    return pipe_closed ? STIC_EXIT_SIGNAL + SIGPIPE : stic_cli_fail(err);
+  if (stic_session_commit(&r->session, "", err) != STIC_OK)
+    return stic_cli_fail(err);
   if (r->movie && stic_movie_keep(r->movie, err) != STIC_OK)
     movie_failed(r, err);
   if (stic_review_finish(&r->review, &r->session, err) != STIC_OK)

@@ -239,25 +239,25 @@ static int finish(run *r, const stic_live_report *report, stic_error *err)
 {
   stic_trace_writer *recording = r->recording;
   const bool session_failed = stic_session_write_failed(&r->session);
-  int code = report->end == STIC_LIVE_DEVICE_ENDED ? device_failure(r, report->device_result) : STIC_OK;
-  bool pipe_closed;
+  int code;
 
+  r->session.seconds = report->seconds;
+  count_all(r, report);
+  if (report->rows > 0)
+    tell_report(r, report); /* first: what failed is the last word */
+  code = report->end == STIC_LIVE_DEVICE_ENDED ? device_failure(r, report->device_result) : STIC_OK;
   if (report->output_error.status != STIC_OK && !session_failed)
     code = stic_cli_fail(&report->output_error);
   r->recording = NULL;
   if (stic_trace_finish(recording, err) != STIC_OK && code == STIC_OK)
     code = stic_cli_fail(err);
-  count_all(r, report);
-  r->session.seconds = report->seconds;
-  if (stic_session_commit(&r->session, report->scheduling, &pipe_closed, err) != STIC_OK && !pipe_closed)
+  if (stic_session_commit(&r->session, report->scheduling, err) != STIC_OK)
     code = stic_cli_fail(err);
   if (report->picture_error.status != STIC_OK)
     code = stic_cli_fail(&report->picture_error);
   if (code == STIC_OK)
     code = r->view_code;
-  if (report->rows > 0)
-    tell_report(r, report);
-  else if (code == STIC_OK)
+  if (code == STIC_OK && report->rows == 0)
     stic_cli_say("no sample came");
   return code;
 }
@@ -286,7 +286,8 @@ static stic_status open_device(run *r, const run_options *o, const char *scene, 
     status = stic_cli_check_paths(inputs, 3, outputs, 5, err);
   }
   if (status == STIC_OK)
-    status = stic_tracker_read(o->tracker ? o->tracker : scene, o->tracker != NULL, &settings, err);
+    status = o->tracker ? stic_tracker_read(o->tracker, NULL, true, &settings, err)
+                        : stic_tracker_read(scene, r->session.scene_text, false, &settings, err);
   if (status == STIC_OK)
     status = stic_ring_create(sizeof(news), NEWS_ROOM, &r->news, err);
   if (status == STIC_OK)

@@ -9,7 +9,6 @@
 #include "session.h"
 #include "sheet.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -385,14 +384,9 @@ static stic_status make_sheet(still *s, const still_options *o, stic_error *err)
 static int finish(still *s, stic_error *err)
 {
   stic_outfile *out = s->out;
-  bool pipe_closed;
 
   s->out = NULL;
-  stic_outfile_flush(out);
-  pipe_closed = stic_outfile_error(out) == EPIPE;
-  if (stic_outfile_commit(out, err) != STIC_OK)
-    return pipe_closed ? STIC_EXIT_SIGNAL + SIGPIPE : stic_cli_fail(err);
-  return STIC_OK;
+  return stic_outfile_commit(out, err) == STIC_OK ? STIC_OK : stic_cli_fail(err);
 }
 
 static int run(still *s, const still_options *o)

@@ -44,7 +44,7 @@ static int show_help(void)
          "  5  could not write, or there is no usable renderer\n"
          "  6  out of memory\n"
          "  128 + n  ended by signal n\n");
-  return (int)stic_cli_flush();
+  return STIC_OK;
 }
 
 static int show_version(void)
@@ -59,13 +59,20 @@ static int show_version(void)
     printf("MIT licence\n");
   printf("video: %s%s\n", *libav ? "libav, " : "none", libav);
   printf("window: %s\n", stic_window_available() ? "SDL" : "none");
-  return (int)stic_cli_flush();
+  return STIC_OK;
 }
 
-/* An input that a signal interrupted is no bad one. */
+/* What was found or done counts only once it is written, and an input that a signal interrupted is no bad one. */
 static int ended(int code)
 {
-  return code == STIC_BAD_INPUT && stic_cli_signal() != 0 ? STIC_EXIT_SIGNAL + stic_cli_signal() : code;
+  int flushed;
+
+  if (code == STIC_BAD_INPUT && stic_cli_signal() != 0)
+    return STIC_EXIT_SIGNAL + stic_cli_signal();
+  if (code != STIC_OK && code != STIC_FAILED)
+    return code;
+  flushed = stic_cli_flush();
+  return flushed == STIC_OK ? code : flushed;
 }
 
 int main(int argc, char **argv)
@@ -75,9 +82,9 @@ int main(int argc, char **argv)
   stic_cli_hold_streams();
   stic_cli_catch_signals();
   if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0)
-    return show_help();
+    return ended(show_help());
   if (strcmp(name, "--version") == 0)
-    return show_version();
+    return ended(show_version());
   for (size_t i = 0; i < COMMAND_COUNT; i++) {
     if (strcmp(name, commands[i].name) == 0)
       return ended(commands[i].run(argc - 1, (const char **)(argv + 1)));

@@ -5,8 +5,8 @@
 #include "../error.h"
 #include "../io/events_csv.h"
 #include "../io/log_csv.h"
+#include "../scene_yaml.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -101,7 +101,8 @@ stic_status stic_session_load(stic_session *s, const stic_session_options *o, co
   s->scene_path = scene_path;
   status = read_settings(s, o, err);
   if (status == STIC_OK)
-    status = stic_scene_read(scene_path, s->overrides, s->override_count, &s->scene, err);
+    status =
+      stic_scene_read_text(scene_path, s->overrides, s->override_count, &s->scene, &s->scene_text, err);
   if (status == STIC_OK)
     status = settle_accuracy(s, o, err);
   if (status != STIC_OK)
@@ -200,33 +201,28 @@ void stic_session_flush(stic_session *s)
     stic_outfile_flush(s->events);
 }
 
-static stic_status commit(stic_outfile **out, bool *pipe_closed, stic_error *err)
+static stic_status commit(stic_outfile **out, stic_error *err)
 {
   stic_outfile *o = *out;
 
   *out = NULL;
-  if (!o)
-    return STIC_OK;
-  stic_outfile_flush(o);
-  *pipe_closed = stic_outfile_error(o) == EPIPE;
   return stic_outfile_commit(o, err);
 }
 
-stic_status stic_session_commit(stic_session *s, const char *scheduling, bool *pipe_closed, stic_error *err)
+stic_status stic_session_commit(stic_session *s, const char *scheduling, stic_error *err)
 {
   const double seconds = s->seconds > 0 ? s->seconds : (double)(stic_clock_ns() - s->started_ns) / 1e9;
   stic_status status = STIC_OK;
 
-  *pipe_closed = false;
   /* All data first, so that a full disk is found before anything is in place. */
   if (s->log)
     stic_outfile_flush(s->log);
   if (s->events && stic_outfile_flush(s->events) != 0)
-    status = commit(&s->events, pipe_closed, err);
+    status = commit(&s->events, err);
   if (status == STIC_OK)
-    status = commit(&s->log, pipe_closed, err);
+    status = commit(&s->log, err);
   if (status == STIC_OK)
-    status = commit(&s->events, pipe_closed, err);
+    status = commit(&s->events, err);
   if (status == STIC_OK && s->timing_path)
     status = stic_timing_write(s->timing, seconds, scheduling, s->timing_path, err);
   return status;
@@ -237,6 +233,7 @@ void stic_session_close(stic_session *s)
   stic_outfile_abort(s->log);
   stic_outfile_abort(s->events);
   stic_sim_destroy(s->sim);
+  free(s->scene_text);
   free(s->timing);
   free(s->overrides);
   memset(s, 0, sizeof *s);

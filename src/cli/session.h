@@ -45,6 +45,7 @@ typedef struct stic_session {
   const stic_session_options *options; /* as given */
   const char *scene_path;
   stic_scene scene;
+  char *scene_text; /* of its file, which may be a pipe and gone */
   stic_settings settings;
   char accuracy_text[96]; /* "event (auto, budget 3225806 ns)" */
   stic_override *overrides;
@@ -89,10 +90,8 @@ void stic_session_flush(stic_session *session);
 /* Whether an output could not be written: no use in going on, stic_session_commit() will say why. */
 bool stic_session_write_failed(const stic_session *session);
 
-/* Moves all outputs into place; the first failure is returned and what follows is dropped.
- * `*pipe_closed`: it failed because the reader of standard output has gone. */
-stic_status stic_session_commit(stic_session *session, const char *scheduling, bool *pipe_closed,
-                                stic_error *err);
+/* Moves all outputs into place; the first failure is returned and what follows is dropped. */
+stic_status stic_session_commit(stic_session *session, const char *scheduling, stic_error *err);
 
 /* Ends; outputs not committed leave nothing. */
 void stic_session_close(stic_session *session);

@@ -103,7 +103,7 @@ static int open_place(stic_outfile *out)
 
 static stic_status cannot_write(const char *path, int problem, stic_error *err)
 {
-  const char *name = strcmp(path, "-") == 0 ? "standard output" : path;
+  const char *name = strcmp(path, "-") == 0 ? STIC_OUTFILE_STDOUT : path;
 
   if (problem == ENOMEM)
     return stic_error_set(err, STIC_NO_MEMORY, name, 0, "out of memory");

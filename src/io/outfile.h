@@ -6,6 +6,9 @@
 
 typedef struct stic_outfile stic_outfile;
 
+/* The file that errors name where the path is "-". */
+#define STIC_OUTFILE_STDOUT "standard output"
+
 /* Starts an output for `path`; nothing appears there before stic_outfile_commit(). An existing file
  * keeps its permissions and is replaced only then; a symbolic link's target is meant and has to be there. "-" (standard
  * output) and what is no regular file (a pipe, /dev/null) are written directly. The caller owns

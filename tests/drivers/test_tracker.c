@@ -53,7 +53,7 @@ static void test_wrong(void **state)
     stic_tracker_settings settings;
     stic_error err;
 
-    assert_int_equal(stic_tracker_read(path, true, &settings, &err), STIC_BAD_INPUT);
+    assert_int_equal(stic_tracker_read(path, NULL, true, &settings, &err), STIC_BAD_INPUT);
     assert_string_equal(err.file, path);
     if (err.line != cases[i].line)
       fail_msg("case %d: line %d, %s", (int)i, (int)err.line, err.message);
@@ -68,10 +68,10 @@ static void test_absent(void **state)
   stic_error err;
 
   (void)state;
-  assert_int_equal(stic_tracker_read("/no/such/file", false, &settings, &err), STIC_BAD_INPUT);
+  assert_int_equal(stic_tracker_read("/no/such/file", NULL, false, &settings, &err), STIC_BAD_INPUT);
   stic_test_contains(err.message, "cannot open the tracker");
-  assert_int_equal(stic_tracker_read(stic_test_write("s.yaml", stic_test_scene), false, &settings, &err),
-                   STIC_OK);
+  assert_int_equal(
+    stic_tracker_read(stic_test_write("s.yaml", stic_test_scene), NULL, false, &settings, &err), STIC_OK);
   assert_false(settings.filtered);
   assert_true(settings.frame.buttons[0] == 0 && settings.frame.axes[0] == 1 && settings.rate.linear == 1);
 }
@@ -89,7 +89,7 @@ static void test_in_scene(void **state)
   snprintf(text, sizeof text, "%stracker: {scale: 2, axes: [x, -z, y]}\n", stic_test_scene);
   path = stic_test_write("s.yaml", text);
   assert_int_equal(stic_scene_read(path, NULL, 0, &scene, &err), STIC_OK);
-  assert_int_equal(stic_tracker_read(path, true, &settings, &err), STIC_OK);
+  assert_int_equal(stic_tracker_read(path, NULL, true, &settings, &err), STIC_OK);
   assert_true(settings.frame.scale == 2);
 }
 
@@ -107,7 +107,7 @@ static void test_all_keys(void **state)
         "  axes: [x, -z, y]\n  scale: 0.5\n  offset: [1, 2, 3]\n  buttons: {grip: 5, reset: none, clutch: 31}\n"
         "  filter: {min_cutoff: [1, 2], beta: [3, 4], derivative_cutoff: [5, 6]}\n"
         "  rate: {linear: 2, angular: 3, dead_zone: [0.1, 0.2], auto_zero: false, home: [7, 8, 9]}\n"),
-      true, &s, &err),
+      NULL, true, &s, &err),
     STIC_OK);
   assert_memory_equal(s.frame.axes, axes, sizeof axes);
   assert_memory_equal(s.frame.hand_axes, hand, sizeof hand);
@@ -118,8 +118,8 @@ static void test_all_keys(void **state)
   assert_true(s.rate.linear == 2 && s.rate.angular == 3 && s.rate.dead_zone[1] == 0.2 && !s.rate.auto_zero &&
               s.rate.home_position[0] == 7);
   assert_int_equal(
-    stic_tracker_read(stic_test_write("t.yaml", HEAD "  hand_axes: [x, z, -y]\n  filter: {}\n"), true, &s,
-                      &err),
+    stic_tracker_read(stic_test_write("t.yaml", HEAD "  hand_axes: [x, z, -y]\n  filter: {}\n"), NULL, true,
+                      &s, &err),
     STIC_OK);
   /* The hand's y is the part's z, its z the part's -y. */
   assert_true(s.frame.hand_axes[7] == 1 && s.frame.hand_axes[5] == -1 && s.filtered &&
@@ -140,7 +140,7 @@ static void test_way(void **state)
       stic_test_write(
         "t.yaml", HEAD
         "  axes: [x, z, -y]\n  scale: 2\n  buttons: {grip: 3}\n  rate: {dead_zone: [0, 0], home: [0, 1, 0]}\n"),
-      true, &settings, &err),
+      NULL, true, &settings, &err),
     STIC_OK);
   stic_tracker_begin(&tracker, &settings, STIC_DRIVER_RATE);
   for (int i = 0; i <= 10; i++) {

@@ -318,7 +318,7 @@ static void test_all_problems(void **state)
   stic_scene s;
 
   (void)state;
-  assert_int_equal(stic_scene_read_all(stic_test_write("s.yaml", bad), NULL, 0, &s, count_problem, &c),
+  assert_int_equal(stic_scene_read_all(stic_test_write("s.yaml", bad), NULL, 0, &s, NULL, count_problem, &c),
                    STIC_BAD_INPUT);
   for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++)
     stic_test_contains(c.all, expected[i]);

@@ -55,7 +55,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   stic_error err;
   int errors = 0;
   const stic_status status =
-    stic_scene_read_all(path, &override, override.key != NULL, &scene, on_finding, &errors);
+    stic_scene_read_all(path, &override, override.key != NULL, &scene, NULL, on_finding, &errors);
 
   require((status == STIC_OK) == (errors == 0));
   if (status != STIC_OK)

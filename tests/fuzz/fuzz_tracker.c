@@ -41,7 +41,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   stic_error err;
 
   for (int required = 0; required < 2; required++) {
-    if (stic_tracker_read(path, required, &settings, &err) != STIC_OK) {
+    if (stic_tracker_read(path, NULL, required, &settings, &err) != STIC_OK) {
       require(err.message[0] != '\0');
       continue;
     }
