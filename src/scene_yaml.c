@@ -33,7 +33,7 @@ typedef struct reading {
   origin origins[STIC_KEY_SURFACE];
   origin surface_origins[STIC_SURFACES_MAX][SURFACE_KEYS];
   int64_t vertex_lines[STIC_VERTICES_MAX];
-  stic_report *report;
+  stic_scene_report *report;
   void *context;
   stic_status status; /* of the first error */
 } reading;
@@ -693,7 +693,7 @@ static void apply_overrides(reading *r, const stic_override *overrides, int coun
 }
 
 stic_status stic_scene_read_all(const char *path, const stic_override *overrides, int override_count,
-                                stic_scene *scene, char **text, stic_report *report, void *context)
+                                stic_scene *scene, char **text, stic_scene_report *report, void *context)
 {
   reading *r = calloc(1, sizeof *r);
   stic_scene *draft = malloc(sizeof *draft);

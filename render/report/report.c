@@ -11,29 +11,7 @@
 #include "../../src/error.h"
 #include "report_data.h"
 
-#define SCENE_TEXT_MAX (1024 * 1024) /* scene files are far smaller */
-
 /* ---- gathering ----------------------------------------------------------------------------- */
-
-static stic_status read_scene_text(stic_report *r, stic_error *err)
-{
-  const char *path = r->settings.scene_path;
-  FILE *file = fopen(path, "rb");
-  char *bytes = file ? malloc(SCENE_TEXT_MAX) : NULL;
-  size_t size = bytes ? fread(bytes, 1, SCENE_TEXT_MAX, file) : 0;
-  const bool bad = !file || ferror(file);
-
-  if (bad)
-    stic_error_set(err, STIC_BAD_INPUT, path, 0, "cannot read: %s", strerror(errno));
-  if (file)
-    fclose(file);
-  if (!bad && bytes)
-    r->scene_text = stic_utf8_clean(bytes, size);
-  free(bytes);
-  if (bad)
-    return STIC_BAD_INPUT;
-  return r->scene_text ? STIC_OK : stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
-}
 
 /* A hidden name in the page's folder; none for a page that goes to a pipe. */
 static void choose_video_path(stic_report *r)
@@ -60,9 +38,9 @@ stic_status stic_report_open(const stic_report_settings *settings, stic_report *
     return stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
   assert(settings->path && settings->scene && settings->solver && settings->fps > 0);
   r->settings = *settings;
-  status = read_scene_text(r, err);
-  if (status == STIC_OK)
-    status = stic_outfile_open(settings->path, &r->out, err);
+  r->scene_text = stic_utf8_clean(settings->scene_text, strlen(settings->scene_text));
+  status = r->scene_text ? stic_outfile_open(settings->path, &r->out, err)
+                         : stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
   if (status != STIC_OK) {
     stic_report_close(r);
     return status;

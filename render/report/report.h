@@ -12,7 +12,7 @@ typedef struct stic_report_settings {
   const char *path; /* of the page; "-": standard output */
   const stic_scene *scene;
   const stic_settings *solver;
-  const char *scene_path;         /* its text is shown */
+  const char *scene_path, *scene_text;
   const char *input_kind, *input; /* "trace" or "device", and its path or description */
   const char *command;            /* the command line; "": not known */
   const stic_override *overrides; /* may be NULL if override_count is 0 */
@@ -24,7 +24,7 @@ typedef struct stic_report_settings {
 typedef struct stic_report stic_report;
 
 /* Refuses what cannot be written. The caller owns `*report`. Errors: STIC_USAGE, STIC_CANNOT_WRITE,
- * STIC_BAD_INPUT (the scene's text), STIC_NO_MEMORY. Real-time: no. */
+ * STIC_NO_MEMORY. Real-time: no. */
 stic_status stic_report_open(const stic_report_settings *settings, stic_report **report, stic_error *err);
 
 /* Where a video for the page alone may be put: beside the page, removed by stic_report_close(). NULL for

@@ -91,6 +91,7 @@ stic_status stic_review_open(stic_review *v, const char *path, const stic_sessio
                                     .scene = &s->scene,
                                     .solver = &s->settings,
                                     .scene_path = source->scene,
+                                    .scene_text = s->scene_text,
                                     .input_kind = "trace",
                                     .input = source->trace,
                                     .command = v->command,

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../../src/io/trace_csv.h"
+#include "../../src/scene_yaml.h"
 #include "report.h"
 #include "video.h"
 
@@ -100,14 +101,16 @@ static stic_status make(char **argv, stic_timing *timing, stic_error *err)
 {
   static stic_scene scene;
   stic_settings settings;
-  stic_report_settings page = {argv[1], &scene,      &settings, argv[2], "trace",
+  stic_report_settings page = {argv[1], &scene,      &settings, argv[2], NULL, "trace",
                                argv[3], "make_page", NULL,      0,       0};
   stic_report *report = NULL;
   const char *video = strcmp(argv[5], "none") == 0 ? NULL : argv[5];
+  char *text;
   int64_t span = 0;
-  stic_status status = stic_scene_read(argv[2], NULL, 0, &scene, err);
+  stic_status status = stic_scene_read_text(argv[2], NULL, 0, &scene, &text, err);
 
   stic_settings_init(&settings);
+  page.scene_text = text;
   page.fps = atoi(argv[4]);
   if (status == STIC_OK)
     status = stic_report_open(&page, &report, err);
@@ -122,6 +125,7 @@ static stic_status make(char **argv, stic_timing *timing, stic_error *err)
   if (status == STIC_OK)
     status = stic_report_keep(report, err);
   stic_report_close(report);
+  free(text);
   return status;
 }
 
