@@ -64,10 +64,14 @@ static int measure(const stic_cli_args *args, const bench_options *o)
   const bool trade = strcmp(name, "trade") == 0, validate = strcmp(name, "validate") == 0;
   const bool render = strcmp(name, "render") == 0, devices = strcmp(name, "devices") == 0;
   const bool extreme = strcmp(name, "extremes") == 0;
+  const char *const inputs[] = {args->positions[1], args->positions[2]}, *const outputs[] = {o->csv,
+                                                                                             o->picture};
+  stic_error err;
 
   if (!trade && !validate && !render && !devices && !extreme && strcmp(name, "speed") != 0) {
-    stic_cli_say("bench: unknown measurement '%.40s'; expected speed, render, devices, validate, trade or extremes",
-                 name);
+    stic_cli_say(
+      "bench: unknown measurement '%.40s'; expected speed, render, devices, validate, trade or extremes",
+      name);
     return STIC_USAGE;
   }
   if (args->position_count != 1 && !((trade || extreme) && args->position_count == 3)) {
@@ -87,16 +91,14 @@ static int measure(const stic_cli_args *args, const bench_options *o)
     stic_cli_say("bench %s has none of --picture, --sweep, --case, --dump, --random and --long", name);
     return STIC_USAGE;
   }
+  if (stic_cli_check_paths(inputs, 2, outputs, 2, &err) != STIC_OK)
+    return stic_cli_fail(&err);
   if (extreme)
     return extremes(args, o);
   if (trade) {
     const stic_trade_options options = {
       o->quick != 0, args->positions[1], args->positions[2], o->csv, o->plot, o->set};
-    const char *const inputs[] = {args->positions[1], args->positions[2]}, *const outputs[] = {o->csv};
-    stic_error err;
 
-    if (stic_cli_check_paths(inputs, 2, outputs, 1, &err) != STIC_OK)
-      return stic_cli_fail(&err);
     return stic_bench_trade(&options);
   }
   if (devices) {
@@ -114,8 +116,8 @@ int stic_cmd_bench(int argc, const char **argv)
   bench_options o = {.spoil = 1, .seed = 1, .number = -1};
   const struct poptOption table[] = {
     {"quick", '\0', POPT_ARG_NONE, &o.quick, 0, "Few repetitions: whether it works, not how fast", NULL},
-    {"csv", '\0', POPT_ARG_STRING, &o.csv, 0, "validate, trade, devices, extremes: write the table also as CSV",
-     "FILE"},
+    {"csv", '\0', POPT_ARG_STRING, &o.csv, 0,
+     "validate, trade, devices, extremes: write the table also as CSV", "FILE"},
     {"seconds", '\0', POPT_ARG_DOUBLE, &o.seconds, 0, "devices: how long latency is measured, default 60",
      "N"},
     {"plot", '\0', POPT_ARG_STRING, &o.plot, 0, "trade: draw NAME.png and NAME.svg (needs gnuplot)", "NAME"},

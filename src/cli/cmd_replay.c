@@ -138,6 +138,7 @@ static stic_status open_movie(replay *r, const replay_options *o, const char *tr
 {
   stic_movie_settings settings;
   stic_extent extent;
+  bool measured = true;
   stic_status status;
 
   stic_movie_settings_init(&settings);
@@ -153,9 +154,9 @@ static stic_status open_movie(replay *r, const replay_options *o, const char *tr
   if (status == STIC_OK && o->hud_timing)
     status = stic_session_time(&r->session, err);
   if (status == STIC_OK)
-    status =
-      stic_pictures_measure(&r->session.scene, &r->session.settings, trace, o->lenient != 0, &extent, err);
-  if (status == STIC_OK && strcmp(trace, "-") == 0)
+    status = stic_pictures_measure(&r->session.scene, &r->session.settings, trace, o->lenient != 0, &extent,
+                                   &measured, err);
+  if (!measured)
     settings.render.extent = NULL;
   r->hud_timing = o->hud_timing != 0;
   return status == STIC_OK ? stic_movie_open(&settings, &r->session.scene, &r->movie, err) : status;

@@ -6,6 +6,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 void stic_picture_options_free(stic_picture_options *o)
 {
@@ -50,8 +51,16 @@ stic_status stic_pictures_apply(const stic_picture_options *o, stic_render_setti
   return stic_render_settings_validate(s, err);
 }
 
+static bool can_be_read_twice(const char *path)
+{
+  struct stat st;
+
+  return strcmp(path, "-") != 0 &&
+         (stat(path, &st) != 0 || S_ISREG(st.st_mode)); /* what is absent, the reader tells */
+}
+
 stic_status stic_pictures_measure(const stic_scene *scene, const stic_settings *settings, const char *trace,
-                                  bool lenient, stic_extent *extent, stic_error *err)
+                                  bool lenient, stic_extent *extent, bool *measured, stic_error *err)
 {
   const stic_trace_options options = {.lenient = lenient};
   stic_trace_reader *reader = NULL;
@@ -61,7 +70,8 @@ stic_status stic_pictures_measure(const stic_scene *scene, const stic_settings *
   stic_status status;
 
   stic_extent_init(extent);
-  if (strcmp(trace, "-") == 0)
+  *measured = can_be_read_twice(trace);
+  if (!*measured)
     return STIC_OK;
   status = stic_sim_create(scene, settings, &sim, err);
   if (status == STIC_OK)

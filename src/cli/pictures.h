@@ -28,9 +28,9 @@ stic_status stic_pictures_apply(const stic_picture_options *options, stic_render
                                 stic_error *err);
 
 /* Solves the trace once without writing anything, so that pictures can have a frame and scales that fit all of
- * it. Bad lines are left for the run itself to tell: what was read up to there counts. Not for standard input,
- * which can be read once only: the extent then stays empty. A signal ends it early. */
+ * it. Bad lines are left for the run itself to tell: what was read up to there counts. What can be read once only,
+ * standard input and pipes, is left alone, and `*measured` false. A signal ends it early. */
 stic_status stic_pictures_measure(const stic_scene *scene, const stic_settings *settings, const char *trace,
-                                  bool lenient, stic_extent *extent, stic_error *err);
+                                  bool lenient, stic_extent *extent, bool *measured, stic_error *err);
 
 #endif
