@@ -393,6 +393,7 @@ stic_raw_status stic_raw_next(stic_raw_reader *r, stic_raw_record *record, stic_
     size_t length;
     stic_raw_status status = STIC_RAW_BAD;
 
+    errno = 0;
     switch (stic_line_reader_next(r->lines, &text, &length)) {
     case STIC_LINE_READ:
       status = read_line(r, text, length, record, &problem);
@@ -406,7 +407,10 @@ stic_raw_status stic_raw_next(stic_raw_reader *r, stic_raw_record *record, stic_
         return bad(r, err, "the recording holds no records; expected '%s' or a recording by hid-recorder",
                    STIC_RAW_FORMAT);
       return STIC_RAW_END;
-    case STIC_LINE_WAIT: return STIC_RAW_WAIT;
+    case STIC_LINE_WAIT: /* nobody who asks again looks for signals, and the pipe may never be written to */
+      if (errno == EINTR)
+        return bad(r, err, "cannot read: %s", strerror(errno));
+      return STIC_RAW_WAIT;
     case STIC_LINE_FAILED: return bad(r, err, "cannot read: %s", strerror(errno));
     }
     if (status == STIC_RAW_BAD && !pass_over(r, &problem)) {

@@ -43,8 +43,9 @@ typedef struct stic_raw_reader stic_raw_reader;
 typedef enum stic_raw_status {
   STIC_RAW_RECORD, /* `*record` is set */
   STIC_RAW_END,
-  STIC_RAW_WAIT, /* nothing yet: interrupted by a signal, or a slow pipe; ask again */
-  STIC_RAW_BAD   /* `*err` says which line and what was expected; the reader can only be closed */
+  STIC_RAW_WAIT, /* nothing yet: a slow pipe; ask again */
+  STIC_RAW_BAD /* `*err` says which line and what was expected, or that a signal came while it waited; the reader can
+                  * only be closed */
 } stic_raw_status;
 
 /* Opens a recording, "-" for standard input; its first line decides the kind. The caller owns `*reader`.

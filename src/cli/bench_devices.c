@@ -361,15 +361,15 @@ static stic_status record_all(bench *b, const char *path, int64_t count, stic_er
   status = send_through(b, FAST_RATE, count, recording, &a, &report, err);
   if (stic_trace_finish(recording, status == STIC_OK ? err : NULL) != STIC_OK && status == STIC_OK)
     status = STIC_CANNOT_WRITE;
-  if (status == STIC_OK)
+  if (status == STIC_OK && stic_cli_signal() == 0)
     status = count_missing(path, count, &missing, err);
-  if (status != STIC_OK)
+  if (status != STIC_OK || stic_cli_signal() != 0)
     return status;
   print_row(b, "loss", "logitech at 20000 Hz", 1e3);
   printf(
     "  of %lld records lost: %lld on the way, %lld in the recording; the most that waited: %zu samples, %zu rows\n",
     (long long)count, (long long)a.lost, (long long)missing, report.samples_most, report.rows_most);
-  if (stic_cli_signal() == 0 && (a.lost > 0 || missing > 0))
+  if (a.lost > 0 || missing > 0)
     return stic_error_set(err, STIC_FAILED, NULL, 0, "records were lost");
   return STIC_OK;
 }

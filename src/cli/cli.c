@@ -38,6 +38,8 @@ int stic_cli_fail(const stic_error *err)
   assert(err->status != STIC_OK);
   if (err->status == STIC_CANNOT_WRITE && strcmp(err->file, STIC_OUTFILE_STDOUT) == 0 && reader_has_left())
     return STIC_EXIT_PIPE;
+  if (err->status == STIC_BAD_INPUT && stic_cli_signal() != 0)
+    return STIC_EXIT_SIGNAL + stic_cli_signal();
   print_problem("", err);
   return (int)err->status;
 }
@@ -205,6 +207,13 @@ stic_status stic_cli_check_paths(const char *const *inputs, int input_count, con
     }
   }
   return STIC_OK;
+}
+
+bool stic_cli_reads_once(const char *path)
+{
+  struct stat st;
+
+  return strcmp(path, "-") == 0 || (stat(path, &st) == 0 && S_ISFIFO(st.st_mode));
 }
 
 /* ---- standard streams --------------------------------------------------------------------- */

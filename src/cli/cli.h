@@ -24,8 +24,8 @@ int stic_cmd_devices(int argc, const char **argv);
 
 /* ---- messages (standard error) ------------------------------------------------------------ */
 
-/* Prints an error and returns its status, which is the exit code. Quiet is only that the reader of standard output has
- * left: STIC_EXIT_PIPE. */
+/* Prints an error and returns its status, which is the exit code. Quiet is that the reader of standard output has left,
+ * STIC_EXIT_PIPE, and an input that a signal interrupted, STIC_EXIT_SIGNAL + its number. */
 int stic_cli_fail(const stic_error *err);
 void stic_cli_warn(const stic_error *problem);
 /* "stiction: ..." in one line. */
@@ -69,6 +69,9 @@ void stic_cli_free_list(char **list);
 /* Refuses outputs (NULL where not asked for) that are one file, or one of the inputs. */
 stic_status stic_cli_check_paths(const char *const *inputs, int input_count, const char *const *outputs,
                                  int output_count, stic_error *err);
+
+/* Whether an input can be read only once: "-" or a pipe. */
+bool stic_cli_reads_once(const char *path);
 
 /* ---- standard streams --------------------------------------------------------------------- */
 

@@ -114,10 +114,10 @@ static stic_status choose_format(const options *o, const char *path, format *fou
   *found = (format)i;
   if (*found != FORMAT_AUTO)
     return STIC_OK;
-  if (strcmp(path, "-") == 0)
+  if (stic_cli_reads_once(path))
     return stic_error_set(
       err, STIC_USAGE, NULL, 0,
-      "standard input cannot be looked at first; expected --from tum, euroc, hid or serial");
+      "standard input or a pipe cannot be looked at first; expected --from tum, euroc, hid or serial");
   return recognize(path, found, err);
 }
 

@@ -62,13 +62,11 @@ static int show_version(void)
   return STIC_OK;
 }
 
-/* What was found or done counts only once it is written, and an input that a signal interrupted is no bad one. */
+/* What was found or done counts only once it is written. */
 static int ended(int code)
 {
   int flushed;
 
-  if (code == STIC_BAD_INPUT && stic_cli_signal() != 0)
-    return STIC_EXIT_SIGNAL + stic_cli_signal();
   if (code != STIC_OK && code != STIC_FAILED)
     return code;
   flushed = stic_cli_flush();

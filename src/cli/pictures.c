@@ -6,7 +6,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 void stic_picture_options_free(stic_picture_options *o)
 {
@@ -51,14 +50,6 @@ stic_status stic_pictures_apply(const stic_picture_options *o, stic_render_setti
   return stic_render_settings_validate(s, err);
 }
 
-static bool can_be_read_twice(const char *path)
-{
-  struct stat st;
-
-  return strcmp(path, "-") != 0 &&
-         (stat(path, &st) != 0 || S_ISREG(st.st_mode)); /* what is absent, the reader tells */
-}
-
 stic_status stic_pictures_measure(const stic_scene *scene, const stic_settings *settings, const char *trace,
                                   bool lenient, stic_extent *extent, bool *measured, stic_error *err)
 {
@@ -70,7 +61,7 @@ stic_status stic_pictures_measure(const stic_scene *scene, const stic_settings *
   stic_status status;
 
   stic_extent_init(extent);
-  *measured = can_be_read_twice(trace);
+  *measured = !stic_cli_reads_once(trace);
   if (!*measured)
     return STIC_OK;
   status = stic_sim_create(scene, settings, &sim, err);

@@ -11,12 +11,14 @@ from common import (SANITIZED, SCENE, TRACE_HEAD, check, finish, folder, leftove
 scene = write("scene.yaml", SCENE)
 trace = write("hand.csv", TRACE_HEAD + rows(300))
 recording = write("poses.txt", "".join(f"{i}.5 0 0.1 0.2 0 0 0 1\n" for i in range(300)))
+PACKET = "80 00 07 68 7f 6c 3c 00 00 01 03 10 6d 30 00 04"  # of the ultrasonic tracker
+SERIAL = "# stiction-serial 1\n" + "".join(f"{20000000 * i} {PACKET}\n" for i in range(30))
+serial = write("serial.txt", SERIAL)
 log = path("good.log")
 assert run("replay", scene, trace, "--log", log).code == 0
 LOG = read(log).decode()
 
 GIGABYTE = 1 << 30
-has_video = "\nvideo: none" not in run("--version").out
 
 
 def sparse(name, head, size, tail=b""):
@@ -114,6 +116,31 @@ def bad_logs():
     return bad
 
 
+def bad_recordings():
+    bad = dict(spoiled(SERIAL, "serial"))
+    bad["head.serial"] = b"# stiction-serial 1\n"
+    bad["odd.serial"] = SERIAL[:-2].encode() + b"\n"
+    bad["huge-time.serial"] = b"# stiction-serial 1\n99999999999999999999 00\n"
+    bad["back.serial"] = b"# stiction-serial 1\n20 00\n10 00\n"
+    bad["no-hex.serial"] = b"# stiction-serial 1\n0 zz\n"
+    bad["no-device.hid"] = b"E: 0.000000 8 00 01 02 03 04 05 06 07\n"
+    bad["huge-report.hid"] = b"D: 0\nR: 1 05\nI: 3 046d c626\nE: 0.000000 99999999999 00\n"
+    bad["huge-id.hid"] = b"D: 99999999999999999999\n"
+    return bad
+
+
+def bad_poses():
+    good = read(recording).decode()
+    bad = dict(spoiled(good.replace("0 0 1\n", "0 0  1\n"), "tum"))
+    for i, value in enumerate(("1e999", "nan", "inf", "-", "1" * 400)):
+        bad[f"value{i}.tum"] = f"0 {value} 0 0 0 0 0 1\n".encode()
+    bad["back.tum"] = b"1 0 0 0 0 0 0 1\n0 0 0 0 0 0 0 1\n"
+    bad["norm.tum"] = b"1 0 0 0 0 0 0 9\n"
+    bad["huge-time.tum"] = b"1e300 0 0 0 0 0 0 1\n"
+    bad["euroc.csv"] = b"#timestamp, p_RS_R_x [m]\n99999999999999999999,0,0,0,1,0,0,0\n"
+    return bad
+
+
 def bad_trackers():
     good = "stiction: 1\ntracker: {scale: 1}\n"
     bad = dict(spoiled(good, "tracker"))
@@ -125,18 +152,29 @@ def bad_trackers():
 # For each kind of file, commands that read it; FILE is put in.
 def commands_with(kind):
     device = "trace:speed=1000000,file="
+    monitor = ["monitor", "--plain", "--seconds", "9", "--device"]
     return {
         "scene": [["replay", "FILE", trace], ["check", "FILE"], ["explain", "FILE"], ["explain", "FILE", trace],
                   ["still", "FILE", trace, "--at", "0", "--out", path("no.png")],
-                  ["run", "FILE", "--device", device + trace], ["bench", "trade", "--quick", "FILE", trace]],
+                  ["run", "FILE", "--device", device + trace], ["bench", "trade", "--quick", "FILE", trace],
+                  ["run", "FILE", "--accuracy", "auto", "--device", device + trace],
+                  ["bench", "extremes", "FILE", trace, "--csv", path("no.csv")]],
         "trace": [["replay", scene, "FILE", "--log", path("no.log")], ["check", scene, "FILE"],
                   ["explain", scene, "FILE"],
                   ["still", scene, "FILE", "--at", "0", "--out", path("no.png")],
                   ["run", scene, "--log", path("live.log"), "--device", device + "FILE"],
-                  ["convert", "FILE", path("no.csv")],
-                  ["bench", "trade", "--quick", scene, "FILE"]],
+                  ["convert", "FILE", path("no.csv")], [*monitor, device + "FILE"],
+                  ["bench", "trade", "--quick", scene, "FILE"],
+                  ["bench", "extremes", scene, "FILE", "--csv", path("no.csv")]],
         "log": [["plot", "FILE", "--out", path("no.svg"), "--figure", "9"]],
-        "tracker": [["run", scene, "--tracker", "FILE", "--device", device + trace]],
+        "tracker": [["run", scene, "--tracker", "FILE", "--device", device + trace],
+                    [*monitor, device + trace, "--tracker", "FILE"],
+                    ["convert", serial, path("no.csv"), "--tracker", "FILE"]],
+        "recording": [["convert", "FILE", path("no.csv")],
+                      [*monitor, "recording:speed=1000000,file=FILE"],
+                      ["run", scene, "--log", path("live.log"), "--device", "recording:speed=1000000,file=FILE"]],
+        "poses": [["convert", "FILE", path("no.csv")],
+                  ["convert", "FILE", path("no.csv"), "--from", "tum", "--grip"]],
     }[kind]
 
 
@@ -149,6 +187,9 @@ def expect_refusal(arguments, name):
     told = done.lines
     if command == "run":  # it may have begun, and says how it kept up
         told = [line for line in told if not line.startswith("stiction: ")]
+        check(f"{what}: the error is the last word", told == done.lines[-1:], done)
+    if command == "convert":
+        told = [line for line in told if not line.startswith("warning: ")]
     if command == "check":
         check(f"{what}: findings", 1 <= len(told), done)
     else:
@@ -165,7 +206,7 @@ def expect_refusal(arguments, name):
 def refusals():
     places = special_places()
     for kind, bad in (("scene", bad_scenes()), ("trace", bad_traces()), ("log", bad_logs()),
-                      ("tracker", bad_trackers())):
+                      ("tracker", bad_trackers()), ("recording", bad_recordings()), ("poses", bad_poses())):
         files = [write("bad-" + name, data) for name, data in bad.items()] + places
         for i, name in enumerate(files):
             commands = commands_with(kind)
@@ -173,7 +214,7 @@ def refusals():
             for j, command in enumerate(commands):
                 if name not in places and (i + j) % len(commands) > 1:
                     continue
-                if name == "" and command[0] == "run":
+                if name == "" and command[0] in ("run", "monitor"):
                     continue  # a device without a file is wrong usage
                 if name == path("dangling") and kind == "log":
                     continue
@@ -221,6 +262,10 @@ def long_lines():
     check("a line without end in a pipe", done.code == 3 and len(done.lines) == 1 and ":3: " in done.err, done)
 
 
+has_video = run("replay", scene, write("short.csv", TRACE_HEAD + rows(3)), "--size", "160x120", "--video", path("v.mkv"),
+                before=None).code == 0
+
+
 def outputs():
     """Places that cannot be written, for every output."""
     device = "trace:speed=1000000,file=" + trace
@@ -232,11 +277,17 @@ def outputs():
                  ["bench", "trade", "--quick", scene, trace, "--csv", "OUT"],
                  ["bench", "validate", "--quick", "--csv", "OUT"],
                  ["convert", recording, "OUT"],
-                 *[["replay", scene, trace, "--size", "160x120", "--video", "OUT.mkv"]] * has_video,
+                 ["replay", scene, trace, "--size", "160x120", "--video", "OUT.mkv"],
                  ["replay", scene, trace, "--size", "160x120", "--frames", "OUT"],
-                 ["replay", scene, trace, "--size", "160x120", "--report", "OUT"]]
+                 ["replay", scene, trace, "--size", "160x120", "--report", "OUT"],
+                 ["run", scene, "--device", device, "--size", "160x120", "--video", "OUT.mkv"],
+                 ["run", scene, "--device", device, "--size", "160x120", "--frames", "OUT"],
+                 ["bench", "extremes", scene, trace, "--csv", "OUT"],
+                 ["bench", "devices", "--quick", "--csv", "OUT"]]
     places = ["/dev/full", path("directory"), path("circle"), path("dangling"), path("absent", "x"),
               path("scene.yaml", "x"), "/proc/version", "/sys/kernel/x", path("y" * 300), ""]
+    if not has_video:
+        commands = [c for c in commands if "--video" not in c]
     for command in commands:
         for place in places:
             if command[0] == "bench" and place not in places[:2]:
@@ -280,7 +331,9 @@ def same_file():
                           ["still", scene, trace, "--at", "0", "--out", name],
                           ["run", scene, "--device", device, "--record", name],
                           ["run", scene, "--device", device, "--log", name],
-                          ["bench", "trade", "--quick", scene, trace, "--csv", name]):
+                          ["bench", "trade", "--quick", scene, trace, "--csv", name],
+                          ["bench", "extremes", scene, trace, "--csv", name],
+                          ["bench", "extremes", scene, trace, "--picture", name], ["convert", trace, name]):
             done = run(*arguments)
             what = " ".join(arguments).replace(folder, ".")
             check(f"{what}: refused", done.code == 2 and len(done.lines) == 1, done)
@@ -305,7 +358,7 @@ def full_disk():
         check(f"full disk, {option}", done.code == 5 and "too large" in done.err, done)
         check(f"full disk, {option}: absent", not os.path.exists(out) and not leftovers(), leftovers())
     os.mkdir(path("full-frames"))
-    for arguments in (["--frames", path("full-frames")], *[["--video", path("full.mkv")]] * has_video):
+    for arguments in (["--frames", path("full-frames")], *([["--video", path("full.mkv")]] * has_video)):
         done = run("replay", scene, trace, *arguments, "--size", "320x240", before=tiny)
         check(f"full disk, {arguments[0]}", done.code == 5 and len(done.lines) == 1, done)
     check("full disk: no pictures", not os.listdir(path("full-frames")) and not os.path.exists(path("full.mkv")) and
@@ -321,17 +374,26 @@ def full_disk():
 def closed_streams():
     """A reader that left, and streams that were never there."""
     big = write("big.csv", TRACE_HEAD + rows(20000))
-    for arguments, codes in ((["replay", scene, big, "--log", "-"], (0, 141)), (["check", scene, trace], (0,)),
-                             (["explain", scene], (0,)), (["--help"], (0,)),
-                             (["still", scene, trace, "--at", "0", "--out", "-"], (0, 141))):
+    device = "trace:speed=1000000,file=" + trace
+    for arguments in (["replay", scene, big, "--log", "-"], ["run", scene, "--device", device, "--log", "-"],
+                      ["replay", scene, trace, "--log", path("l.csv"), "--events", "-"], ["check", scene, trace],
+                      ["check", scene, path("scene.yaml")], ["explain", scene], ["explain", scene, "--json"], ["--help"],
+                      ["--version"], ["replay", "--help"], ["devices"], ["devices", "--json"],
+                      ["monitor", "--plain", "--device", device], ["convert", serial, "-"],
+                      ["still", scene, trace, "--at", "0", "--out", "-"],
+                      ["bench", "validate", "--quick"], ["bench", "trade", "--quick", scene, trace],
+                      ["bench", "extremes", scene, trace, "--csv", "-"]):
+        what = " ".join(arguments).replace(folder, ".")
         ends = os.pipe()
         os.close(ends[0])
         done = run(*arguments, stdout=ends[1], before=None)
         os.close(ends[1])
-        check(f"{arguments[0]} into a closed pipe", done.code in codes and done.err == "", done)
+        said = [line for line in done.lines if arguments[0] != "run" and "scene.yaml:1:" not in line]
+        check(f"{what} into a closed pipe", done.code == 141 and (SANITIZED or not said), done)
         with open("/dev/full", "wb") as full:
             done = run(*arguments, stdout=full, before=None)
-        check(f"{arguments[0]} onto a full device", done.code == 5 and len(done.lines) == 1, done)
+        said = [line for line in done.lines if "cannot write: No space left" in line]
+        check(f"{what} onto a full device", done.code == 5 and said == done.lines[-1:], done)
     for command, name in ((f"replay {scene} {trace} --log - --events {path('e.csv')}", "e.csv"),
                           (f"replay {scene} {trace} --log {path('l.csv')}", "l.csv")):
         done = subprocess.run(["sh", "-c", f'"$STICTION" {command} <&- >&- 2>{path("err")}'], check=False)
@@ -340,6 +402,47 @@ def closed_streams():
               (done.returncode, read(path("err"))))
     subprocess.run(["sh", "-c", f'"$STICTION" replay {scene} /nowhere --log {path("l2.csv")} 2>&-'], check=False)
     check("closed standard error", not os.path.exists(path("l2.csv")), "")
+
+
+def no_window():
+    """A window that cannot be opened is told before anything is solved."""
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        os.environ.pop(name, None)
+    done = run("run", scene, "--device", "trace:file=" + trace, "--log", path("unseen.log"), "--view", before=None)
+    check("no window", done.code in (2, 5) and len(done.lines) == 1, done)  # 2: built without
+    done = run("run", scene, "--device", "mouse", "--log", path("unseen.log"), before=None)
+    check("a mouse without a window", done.code == 2 and len(done.lines) == 1 and "--view" in done.err, done)
+    check("no window: nothing written", not os.path.exists(path("unseen.log")) and not leftovers(), leftovers())
+
+
+def through_pipes():
+    """Each input may be a pipe, which can be read once only."""
+    device = "trace:speed=1000000,file="
+    given = {"scene": read(scene), "trace": read(trace), "log": LOG.encode(), "recording": read(serial),
+             "tracker": b"stiction: 1\ntracker: {scale: 1}\n"}
+    for kind, arguments in (
+            ("scene", ["check", "PIPE"]), ("scene", ["run", "PIPE", "--accuracy", "auto", "--device", device + trace]),
+            ("scene", ["replay", "PIPE", trace, "--report", path("piped.html"), "--size", "160x120"]),
+            ("scene", ["explain", "PIPE", trace]), ("scene", ["bench", "extremes", "PIPE", trace]),
+            ("trace", ["check", scene, "PIPE"]), ("trace", ["explain", scene, "PIPE"]),
+            ("trace", ["replay", scene, "PIPE", "--frames", path("piped"), "--force", "--size", "160x120"]),
+            ("trace", ["still", scene, "PIPE", "--at", "largest-slip", "--out", path("piped.png")]),
+            ("trace", ["run", scene, "--device", device + "PIPE"]), ("trace", ["bench", "extremes", scene, "PIPE"]),
+            ("trace", ["monitor", "--plain", "--device", device + "PIPE"]),
+            ("log", ["plot", "PIPE", "--figure", "9", "--out", path("piped.svg")]),
+            ("recording", ["convert", "PIPE", path("piped.csv"), "--from", "serial"]),
+            ("tracker", ["run", scene, "--tracker", "PIPE", "--device", device + trace])):
+        process = start([a.replace("PIPE", "/dev/stdin") for a in arguments], stdin=subprocess.PIPE, before=None)
+        try:
+            process.stdin.write(given[kind])
+            process.stdin.close()
+        except BrokenPipeError:
+            pass
+        process.stdin = None
+        done = wait(process)
+        what = " ".join(arguments).replace(folder, ".")
+        lacks = done.code == 5 and "renderer" in done.err  # no OpenGL here
+        check(f"{what}: through a pipe", done.code == 0 or lacks, done)
 
 
 def vanishing():
@@ -393,6 +496,8 @@ outputs()
 same_file()
 full_disk()
 closed_streams()
+no_window()
+through_pipes()
 vanishing()
 two_writers()
 finish()

@@ -12,6 +12,7 @@ TURNS = int(os.environ.get("TURNS", "5"))  # per command; more on request
 scene = write("scene.yaml", SCENE)
 trace = write("hand.csv", TRACE_HEAD + rows(200))
 long_trace = write("long.csv", TRACE_HEAD + rows(60000))
+recording = write("poses.txt", "".join(f"{i}.5 0 0.1 0.2 0 0 0 1\n" for i in range(100000)))
 log = path("good.log")
 assert run("replay", scene, trace, "--log", log).code == 0
 device = "trace:speed=1000000,file=" + long_trace
@@ -38,7 +39,15 @@ COMMANDS = {
     "validate": ["bench", "validate", "--quick", "--csv", "OUT/validate.csv"],
     "run": ["run", scene, "--device", device, "--log", "OUT/l.log", "--events", "OUT/e.csv", "--timing", "OUT/t.json",
             "--record", "OUT/record.csv"],
+    "run-pictures": ["run", scene, "--device", "trace:file=" + trace, "--frames", "OUT/frames", "--size", "160x120",
+                     "--record", "OUT/record.csv", "--log", "OUT/l.log", *video],
+    "run-auto": ["run", scene, "--device", device, "--accuracy", "auto", "--log", "OUT/l.log"],
+    "monitor": ["monitor", "--plain", "--device", device],
+    "convert": ["convert", recording, "OUT/c.csv"],
+    "extremes": ["bench", "extremes", scene, long_trace, "--csv", "OUT/x.csv"],
+    "devices": ["bench", "devices", "--quick", "--csv", "OUT/d.csv"],
 }
+LIVE = ("run", "monitor")  # end with 0 once they have begun
 
 
 def signalled(name, out, after, number):
@@ -52,21 +61,21 @@ def signalled(name, out, after, number):
 def judge(name, what, done, number, out):
     files = [os.path.join(at, n) for at, _, names in os.walk(out) for n in names]
     early = done.code == 1000 + number and not files  # before main() could catch anything
-    # It may have ended before; run ends with 0 once it has begun.
+    # It may have ended before.
     check(f"{what}: code", done.code in (0, 128 + number) or early, done)
-    check(f"{what}: quiet", done.code == 0 or not done.lines or name == "run", done)
+    check(f"{what}: quiet", done.code == 0 or not done.lines or COMMANDS[name][0] in LIVE, done)
     check(f"{what}: no sanitizer", "Sanitizer" not in done.err and "runtime error" not in done.err, done)
     for file in files:
         whole = ENDS[os.path.splitext(file)[1]](read(file))
         check(f"{what}: {os.path.basename(file)} is whole", whole, os.path.getsize(file))
-    if done.code == 128 + number and name not in ("run", "plot"):
+    if done.code == 128 + number and name != "plot" and COMMANDS[name][0] not in LIVE:
         check(f"{what}: no output", not files, files)
-    if name == "run" and os.path.exists(out + "/record.csv") and done.code == 0:
+    if os.path.exists(out + "/record.csv") and done.code == 0:
         same = [len([line for line in read(out + n).split(b"\n") if line[:1].isdigit()])
                 for n in ("/record.csv", "/l.log")]
         check(f"{what}: as many rows as samples", same[0] == same[1], (same, done))
     pictures = [f for f in files if "/frames/" in f]
-    check(f"{what}: all pictures or none", len(pictures) in (0, 62), len(pictures))
+    check(f"{what}: all pictures or none", len(pictures) in (0, 62) or name == "run-pictures", len(pictures))
     left = leftovers() + [os.path.join(temporary, n) for n in os.listdir(temporary)]
     check(f"{what}: nothing left", not left, left)
     for file in left:
@@ -91,29 +100,37 @@ def sweep(name):
         judge(name, f"{name}, {signal.Signals(number).name} after {after * 1000:.0f} of {length * 1000:.0f} ms", done,
               number, out)
         ended += done.code > 128
-    check(f"{name}: some were ended", ended > 0 or name == "run", ended)
+    check(f"{name}: some were ended", ended > 0 or COMMANDS[name][0] in LIVE, ended)
 
 
 def waiting_readers():
     """Nobody writes the pipe that they read: a signal still ends them."""
-    pipe = path("pipe")
-    os.mkfifo(pipe)
-    commands = [["replay", scene, pipe], ["check", scene, pipe], ["check", pipe], ["explain", scene, pipe],
-                ["plot", pipe, "--out", path("p.svg"), "--figure", "9"], ["bench", "trade", scene, pipe],
-                ["still", scene, pipe, "--at", "0", "--out", path("p.png")],
-                ["run", scene, "--device", "trace:file=" + pipe]]
-    for command in commands:
-        for open_first in (False, True):
-            process = start(command, before=None)
-            fd = os.open(pipe, os.O_WRONLY) if open_first else -1
-            time.sleep(0.15)
+    commands = [["replay", scene, "PIPE"], ["check", scene, "PIPE"], ["check", "PIPE"], ["explain", scene, "PIPE"],
+                ["plot", "PIPE", "--out", path("p.svg"), "--figure", "9"], ["bench", "trade", scene, "PIPE"],
+                ["bench", "extremes", scene, "PIPE"], ["convert", "PIPE", path("c.csv"), "--from", "tum"],
+                ["convert", "PIPE", path("c.csv"), "--from", "serial"],
+                ["still", scene, "PIPE", "--at", "0", "--out", path("p.png")],
+                ["run", "PIPE", "--device", device], ["run", scene, "--device", device, "--tracker", "PIPE"],
+                ["run", scene, "--device", "trace:file=PIPE"], ["run", scene, "--device", "recording:file=PIPE"],
+                ["monitor", "--plain", "--device", "recording:file=PIPE"], ["monitor", "--plain", "--device", "trace:file=PIPE"]]
+    for open_first in (False, True):
+        waiting = []
+        for i, command in enumerate(commands):
+            pipe = path(f"pipe{i}")
+            if not open_first:
+                os.mkfifo(pipe)
+            process = start([a.replace("PIPE", pipe) for a in command], before=None)
+            waiting.append((command, process, os.open(pipe, os.O_WRONLY) if open_first else -1))
+        time.sleep(0.3)
+        for _, process, _ in waiting:
             process.terminate()
+        for command, process, fd in waiting:
             done = wait(process, 10)
             if fd >= 0:
                 os.close(fd)
             what = " ".join(command).replace(folder, ".") + (", opened" if open_first else "")
-            # Opening a device is not yet running.
-            want = (0, 143) if command[0] == "run" else (143,)
+            # Opening a device is not yet running, and one that has not opened may not have got to main().
+            want = [143] + [0] * (command[0] in LIVE) + [1015] * (not open_first)
             check(f"{what}: ended", done.code in want, done)
             check(f"{what}: nothing left", not leftovers(), leftovers())
 
