@@ -17,7 +17,7 @@ int stic_bench_validate(bool quick, const char *csv, double spoil);
 
 typedef struct stic_bench_devices_options {
   bool quick;
-  double seconds;  /* of the latency's measurement, at the device's own rate; 0: 60, quick 2 */
+  double seconds;  /* of the latency's measurement, at the device's own rate; 0.1 or more */
   const char *csv; /* NULL: none */
 } stic_bench_devices_options;
 

@@ -413,13 +413,13 @@ int stic_bench_devices(const stic_bench_devices_options *o)
     stic_cli_say("bench devices: out of memory");
     return STIC_NO_MEMORY;
   }
-  if (!(o->seconds == 0 || (o->seconds >= 0.1 && o->seconds <= SECONDS_MAX))) {
+  if (!(o->seconds >= 0.1 && o->seconds <= SECONDS_MAX)) {
     stic_cli_say("bench devices: --seconds is %g; expected 0.1 to %d", o->seconds, SECONDS_MAX);
     free(b);
     return STIC_USAGE;
   }
   b->quick = o->quick;
-  b->seconds = o->seconds > 0 ? o->seconds : o->quick ? 2 : 60;
+  b->seconds = o->seconds;
   if (o->csv)
     status = stic_outfile_open(o->csv, &b->csv, &err);
   if (b->csv)

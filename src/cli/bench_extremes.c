@@ -420,9 +420,15 @@ static void add_heat(stic_heat_map *map, const stic_extreme *e, const tally *t)
     (stic_heat_point){e->a, e->b, t->frames > t->no_answer ? fmin(17, fmax(0, digits)) : NAN};
 }
 
+/* -1: the sweep has no picture. */
+static int picture_of(const char *sweep)
+{
+  return strcmp(sweep, "k_p-mu") == 0 ? 0 : strcmp(sweep, "distance") == 0 ? 1 : -1;
+}
+
 static stic_heat_map *map_of(bench *b, const char *sweep, int precision)
 {
-  const int which = strcmp(sweep, "k_p-mu") == 0 ? 0 : strcmp(sweep, "distance") == 0 ? 1 : -1;
+  const int which = picture_of(sweep);
 
   return which < 0 || !b->options->picture ? NULL : &b->maps[which * PRECISIONS + precision];
 }
@@ -495,10 +501,12 @@ static int frames_of_stand(const stic_extremes_options *o)
   return o->long_form ? 10000000 : o->quick ? 500 : 20000;
 }
 
-static void run_sweep(bench *b, const stic_sweep *sweep)
+/* Whether there was anything to do. */
+static bool run_sweep(bench *b, const stic_sweep *sweep)
 {
   const stic_extremes_options *o = b->options;
   static stic_extreme e;
+  bool any = false;
 
   for (int k = 0; sweep->get(&e, k, frames_of_stand(o)) && stic_cli_signal() == 0; k++) {
     label name = {.sweep = sweep->name, .number = k};
@@ -506,6 +514,7 @@ static void run_sweep(bench *b, const stic_sweep *sweep)
 
     if (o->number >= 0 ? k != o->number : o->quick && k % sweep->thin != 0)
       continue;
+    any = true;
     snprintf(name.replay, sizeof name.replay, "--sweep %s --case %d", sweep->name, k);
     stic_extreme_canonical(&e.scene);
     memcpy(before, b->tallies, sizeof before);
@@ -521,24 +530,43 @@ static void run_sweep(bench *b, const stic_sweep *sweep)
       b->tallies[p].residual = fmax(b->tallies[p].residual, before[p].residual);
     }
   }
-  end_sweep(b, sweep->name);
+  if (any)
+    end_sweep(b, sweep->name);
+  return any;
+}
+
+static stic_status no_sweep(const char *wanted, stic_error *err)
+{
+  char names[200] = "";
+
+  for (int i = 0; i < stic_sweep_count; i++)
+    snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", i > 0 ? ", " : "",
+             stic_sweeps[i].name);
+  return stic_error_set(err, STIC_USAGE, NULL, 0, "bench extremes: there is no sweep '%.40s'; expected %s",
+                        wanted, names);
 }
 
 static stic_status run_sweeps(bench *b)
 {
   const char *wanted = b->options->sweep;
-  bool found = false;
+  bool found = false, any = false;
 
+  for (int i = 0; i < stic_sweep_count; i++)
+    found |= !wanted || strcmp(wanted, stic_sweeps[i].name) == 0;
+  if (!found)
+    return no_sweep(wanted, &b->err);
+  if (wanted && b->options->picture && picture_of(wanted) < 0)
+    return stic_error_set(&b->err, STIC_USAGE, NULL, 0,
+                          "bench extremes: --picture is of the sweeps k_p-mu and distance");
   print_head();
   for (int i = 0; i < stic_sweep_count && stic_cli_signal() == 0; i++) {
-    if (wanted && strcmp(wanted, stic_sweeps[i].name) != 0)
-      continue;
-    found = true;
-    run_sweep(b, &stic_sweeps[i]);
+    if (!wanted || strcmp(wanted, stic_sweeps[i].name) == 0)
+      any |= run_sweep(b, &stic_sweeps[i]);
   }
-  return found ? STIC_OK
-               : stic_error_set(&b->err, STIC_USAGE, NULL, 0, "bench extremes: there is no sweep '%.40s'",
-                                wanted);
+  return any || stic_cli_signal() != 0
+           ? STIC_OK
+           : stic_error_set(&b->err, STIC_USAGE, NULL, 0, "bench extremes: there is no case %" PRId64,
+                            b->options->number);
 }
 
 /* ---- random --------------------------------------------------------------------------------------- */
@@ -609,6 +637,9 @@ static stic_status run(bench *b)
 static stic_status write_picture(bench *b)
 {
   static const char *const titles[2] = {"stiffness and friction", "size and distance"};
+  /* A sweep that did not run has no maps. */
+  const int first = b->maps[0].count > 0 ? 0 : PRECISIONS;
+  const int count = (b->maps[PRECISIONS].count > 0 ? 2 * PRECISIONS : PRECISIONS) - first;
 
   for (int i = 0; i < 2 * PRECISIONS; i++) {
     stic_heat_map *map = &b->maps[i];
@@ -618,7 +649,7 @@ static stic_status write_picture(bench *b)
     map->label_a = i < PRECISIONS ? "k_p, N/m" : "size, m";
     map->label_b = i < PRECISIONS ? "mu_s" : "distance from the origin, sizes";
   }
-  return stic_heat_picture(b->options->picture, b->maps, 2 * PRECISIONS, PRECISIONS, &b->err);
+  return stic_heat_picture(b->options->picture, &b->maps[first], count, PRECISIONS, &b->err);
 }
 
 static int finish(bench *b, stic_status status)

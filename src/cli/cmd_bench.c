@@ -2,6 +2,7 @@
 #include "bench.h"
 #include "cli.h"
 
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,6 +19,8 @@ static const stic_cli_usage usage = {
   "          all precisions and levels; with SCENE and TRACE only these; ends with 1 if one is broken\n",
   1, 3};
 
+#define NOT_GIVEN INT_MIN /* of a number */
+
 typedef struct bench_options {
   int quick, long_form;
   char *csv, *plot;
@@ -30,16 +33,18 @@ typedef struct bench_options {
 
 static bool extremes_only(const bench_options *o)
 {
-  return o->picture || o->sweep || o->dump || o->random || o->number >= 0 || o->long_form;
+  return o->picture || o->sweep || o->dump || o->random != NOT_GIVEN || o->number != NOT_GIVEN ||
+         o->long_form;
 }
 
 static int extremes(const stic_cli_args *args, const bench_options *o)
 {
+  const bool random = o->random != NOT_GIVEN;
   const stic_extremes_options options = {.quick = o->quick != 0,
                                          .long_form = o->long_form != 0,
-                                         .random = o->random,
+                                         .random = random ? o->random : 0,
                                          .seed = (uint64_t)o->seed,
-                                         .number = o->number,
+                                         .number = o->number != NOT_GIVEN ? o->number : -1,
                                          .sweep = o->sweep,
                                          .dump = o->dump,
                                          .csv = o->csv,
@@ -47,12 +52,20 @@ static int extremes(const stic_cli_args *args, const bench_options *o)
                                          .scene = args->positions[1],
                                          .trace = args->positions[2]};
 
-  if (o->random < 0 || (o->random && o->sweep)) {
+  if ((random && o->random < 1) || (random && o->sweep)) {
     stic_cli_say("bench extremes: --random is a number of rows above 0, without --sweep");
     return STIC_USAGE;
   }
-  if (o->dump && (o->number < 0 || (!o->random && !o->sweep))) {
+  if (o->dump && (o->number < 0 || (!random && !o->sweep))) {
     stic_cli_say("bench extremes: --dump needs --case K and either --sweep NAME or --random N");
+    return STIC_USAGE;
+  }
+  if (o->number != NOT_GIVEN && o->number < 0) {
+    stic_cli_say("bench extremes: --case is %lld; expected 0 or above", o->number);
+    return STIC_USAGE;
+  }
+  if (o->picture && (random || args->positions[1])) {
+    stic_cli_say("bench extremes: --picture is of sweeps, not of random cases or of a scene");
     return STIC_USAGE;
   }
   return stic_bench_extremes(&options);
@@ -78,7 +91,7 @@ static int measure(const stic_cli_args *args, const bench_options *o)
     stic_cli_say("bench %s: expected %s", name, trade || extreme ? "SCENE and TRACE, or neither" : "no file");
     return STIC_USAGE;
   }
-  if ((o->csv && !trade && !validate && !devices && !extreme) || (o->seconds != 0 && !devices) ||
+  if ((o->csv && !trade && !validate && !devices && !extreme) || (o->seconds != NOT_GIVEN && !devices) ||
       ((o->plot || o->set) && !trade)) {
     stic_cli_say("bench %s has no %s", name,
                  o->plot  ? "--plot"
@@ -102,7 +115,8 @@ static int measure(const stic_cli_args *args, const bench_options *o)
     return stic_bench_trade(&options);
   }
   if (devices) {
-    const stic_bench_devices_options options = {o->quick != 0, o->seconds, o->csv};
+    const stic_bench_devices_options options = {
+      o->quick != 0, o->seconds == NOT_GIVEN ? o->quick ? 2 : 60 : o->seconds, o->csv};
 
     return stic_bench_devices(&options);
   }
@@ -113,7 +127,7 @@ static int measure(const stic_cli_args *args, const bench_options *o)
 
 int stic_cmd_bench(int argc, const char **argv)
 {
-  bench_options o = {.spoil = 1, .seed = 1, .number = -1};
+  bench_options o = {.spoil = 1, .seconds = NOT_GIVEN, .seed = 1, .random = NOT_GIVEN, .number = NOT_GIVEN};
   const struct poptOption table[] = {
     {"quick", '\0', POPT_ARG_NONE, &o.quick, 0, "Few repetitions: whether it works, not how fast", NULL},
     {"csv", '\0', POPT_ARG_STRING, &o.csv, 0,

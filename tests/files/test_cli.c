@@ -400,6 +400,13 @@ static void test_bench(void **state)
   expect(run, 0, "");
   stic_test_contains(run->out, "hash");
   stic_test_contains(run->out, "CSV to CSV");
+  expect(stic_test_program("bench", "extremes", "--random", "0", NULL), 2, "above 0");
+  expect(stic_test_program("bench", "extremes", "--sweep", "x", NULL), 2, "expected stiffness, ");
+  expect(stic_test_program("bench", "extremes", "--sweep", "shape", "--case", "99999", NULL), 2,
+         "no case 99999");
+  expect(stic_test_program("bench", "extremes", "--random", "1", "--picture", "x.png", NULL), 2, "of sweeps");
+  expect(stic_test_program("bench", "extremes", "--sweep", "shape", "--picture", "x.png", NULL), 2, "k_p-mu");
+  expect(stic_test_program("bench", "devices", "--seconds", "0", NULL), 2, "expected 0.1 to");
 }
 
 int main(void)
