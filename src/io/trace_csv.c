@@ -4,6 +4,7 @@
 #include "../number.h"
 #include "format.h"
 #include "line_reader.h"
+#include "outfile.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -347,6 +348,8 @@ stic_status stic_trace_create(const char *path, const char *comment, stic_trace_
     return stic_error_set(err, STIC_NO_MEMORY, path, 0, "out of memory");
   w->fd = standard_output ? STDOUT_FILENO : open_alone(path);
   w->owned = !standard_output;
+  if (standard_output)
+    path = STIC_OUTFILE_STDOUT;
   stic_error_quote(path, strlen(path), w->path, sizeof w->path);
   if (w->fd < 0) {
     status = stic_error_set(err, STIC_CANNOT_WRITE, path, 0, "cannot create the recording: %s",

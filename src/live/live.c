@@ -176,7 +176,8 @@ static void ask_for_real_time(stic_live *live)
   char policy[120], memory[120];
   int problem = ask_for_fifo(*reader, PRIORITY_ABOVE_MIN + 1);
 
-  if (problem == 0)
+  /* ESRCH: a short trace has been read already. */
+  if (problem == 0 || problem == ESRCH)
     problem = ask_for_fifo(*solver, PRIORITY_ABOVE_MIN);
   if (problem == 0)
     snprintf(policy, sizeof policy, "SCHED_FIFO");

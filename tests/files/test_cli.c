@@ -331,6 +331,19 @@ static void test_closed_pipe(void **state)
   text = stic_test_read(stic_test_path("pipe-err"));
   assert_string_equal(text, "");
   free(text);
+  /* A recording: the trace has no end, so nothing but the closed pipe ends the run. */
+  snprintf(command, sizeof command,
+           "( \"$STICTION\" run %s --device trace:speed=100,loop,file=%s --record - 2>%s; echo $? >%s ) | "
+           "head -1 >/dev/null",
+           scene, trace, stic_test_path("pipe-err"), stic_test_path("pipe-code"));
+  status = system(command);
+  assert_int_equal(status, 0);
+  text = stic_test_read(stic_test_path("pipe-err"));
+  assert_null(strstr(text, "cannot write"));
+  free(text);
+  text = stic_test_read(stic_test_path("pipe-code"));
+  assert_string_equal(text, "141\n");
+  free(text);
 }
 
 static void test_frames(void **state)
