@@ -104,6 +104,23 @@ static void trade_tells_and_draws(void **state)
   assert_int_equal(stic_test_count_entries("trade.png"), 1);
 }
 
+/* Where there is no tree of traces it takes a motion of its own. */
+static void trade_has_a_motion(void **state)
+{
+  const char *out = stic_test_path("trade-out");
+  char command[600], *said;
+
+  (void)state;
+  snprintf(command, sizeof command, "cd %s && \"$STICTION\" bench trade --quick --csv own.csv >%s",
+           stic_test_folder(), out);
+  assert_int_equal(system(command), 0);
+  said = stic_test_read(out);
+  stic_test_contains(said, "built in: a box between floor and wall: 400 samples in 12.87 s");
+  stic_test_contains(said, "Recommended for this scene");
+  free(said);
+  assert_true(count_lines(stic_test_path("own.csv")) > 1 + 30 + 5 + 14);
+}
+
 static void trade_refuses(void **state)
 {
   const char *scene = stic_test_write("scene.yaml", stic_test_scene), *csv = stic_test_path("none.csv");
@@ -179,8 +196,8 @@ int main(void)
     cmocka_unit_test(validate_passes),      cmocka_unit_test(validate_fails_when_it_must),
     cmocka_unit_test(wrong_usage),          cmocka_unit_test(trade_tells_and_draws),
     cmocka_unit_test(devices_lose_nothing), cmocka_unit_test(trade_refuses),
-    cmocka_unit_test(explain_says_why),     cmocka_unit_test(explain_reads_traces),
-    cmocka_unit_test(explain_refuses),
+    cmocka_unit_test(trade_has_a_motion),   cmocka_unit_test(explain_says_why),
+    cmocka_unit_test(explain_reads_traces), cmocka_unit_test(explain_refuses),
   };
 
   return cmocka_run_group_tests(tests, NULL, stic_test_clean_up);

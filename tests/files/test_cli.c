@@ -81,6 +81,16 @@ static void test_usage(void **state)
   expect(stic_test_program("replay", scene, trace, "--log", trace, NULL), 2, "is an input");
   expect(stic_test_program("replay", scene, trace, "--log", "-", "--events", "-", NULL), 2, "two outputs");
   expect(stic_test_program("replay", scene, trace, "--frames", "x", "--size", "12", NULL), 2, "--size 12");
+  expect(stic_test_program("replay", scene, trace, "--frames", "x", "--camera", "no", NULL), 2,
+         "--camera no: expected three-quarter, front or follow");
+  expect(stic_test_program("replay", scene, trace, "--frames", "x", "--theme", "no", NULL), 2,
+         "--theme no: expected light or dark");
+  expect(stic_test_program("replay", scene, trace, "--frames", "x", "--quality", "no", NULL), 2,
+         "--quality no: expected fast, good or best");
+  expect(stic_test_program("replay", scene, trace, "--frames", "x", "--plot-of", "no", NULL), 2,
+         "--plot-of no: expected auto, x, y or angle");
+  expect(stic_test_program("replay", scene, trace, "--report", "x.html", "--fps", "0", NULL), 2, "");
+  expect(stic_test_program("check", scene, trace, "--set", "friction", NULL), 2, "expected KEY=VALUE");
   expect(stic_test_program("run", scene, NULL), 2, "no device");
   expect(stic_test_program("run", scene, "--device", "x", NULL), 2, "unknown device");
   expect(stic_test_program("bench", "x", NULL), 2, "unknown measurement 'x'");
@@ -111,6 +121,35 @@ static void test_bad_files(void **state)
   }
   expect(stic_test_program("check", scene, trace, NULL), 0, "");
   stic_test_contains(stic_test_program("check", scene, trace, NULL)->out, "0 errors");
+}
+
+/* Allowed, but seldom meant. */
+static void test_warnings(void **state)
+{
+  const char *odd = stic_test_write(
+    "odd.yaml", "stiction: 1\nobject:\n  size: [16, 8, 10]\n  pose: {x: 0, y: 20}\n"
+                "hand: {stiffness: 200, rotational_stiffness: 0.5, hold: button}\n"
+                "friction: {static: 0.5, dynamic: 0.3}\nsurfaces:\n"
+                "  - {name: a, point: [0, 0], normal_deg: 90, friction: {static: 1, dynamic: 1}}\n"
+                "  - {name: a, point: [0, -1], normal_deg: 90, friction: {static: 1, dynamic: 1}}\n");
+  const stic_test_run *run = stic_test_program("check", odd, trace, NULL);
+
+  (void)state;
+  expect(run, 0, "odd.yaml:3: the object is larger than 10 m; lengths are in m, not mm");
+  stic_test_contains(run->err, "odd.yaml:9: this surface has the name of an earlier one");
+  stic_test_contains(run->err, "odd.yaml:6: friction has no effect: every surface has its own");
+  stic_test_contains(run->err, "hand.csv: the grip button is never pressed, and the scene has hold: button");
+  assert_string_equal(run->out, "0 errors, 4 warnings\n");
+}
+
+/* A device that is a bad file ends the run as the file's own reader would. */
+static void test_run_bad_trace(void **state)
+{
+  char device[300];
+
+  (void)state;
+  snprintf(device, sizeof device, "trace:file=%s", bad_trace);
+  expect(stic_test_program("run", scene, "--device", device, NULL), 3, "bad.csv:3: found 2 fields");
 }
 
 static void test_outputs(void **state)
@@ -437,6 +476,8 @@ int main(void)
     cmocka_unit_test(test_version),
     cmocka_unit_test(test_usage),
     cmocka_unit_test(test_bad_files),
+    cmocka_unit_test(test_warnings),
+    cmocka_unit_test(test_run_bad_trace),
     cmocka_unit_test(test_outputs),
     cmocka_unit_test(test_signal_replay),
     cmocka_unit_test(test_signal_run),

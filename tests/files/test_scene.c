@@ -365,6 +365,74 @@ static void test_validate(void **state)
   stic_test_contains(err.message, "starts inside surface 0");
 }
 
+/* What only a program that fills the struct itself can get wrong. */
+static void test_validate_values(void **state)
+{
+  stic_scene good, s;
+  stic_error err;
+
+  (void)state;
+  stic_scene_init(&good);
+  stic_scene_set_box(&good, 0.2, 0.1);
+  good.stiffness = 200;
+  good.y = 1;
+  good.surface_count = 1;
+  good.surfaces[0].normal_deg = 90;
+  assert_int_equal(stic_scene_validate(&good, &err), STIC_OK);
+  s = good;
+  memset(s.name, 'x', sizeof s.name);
+  assert_int_equal(stic_scene_validate(&s, &err), STIC_BAD_INPUT);
+  stic_test_contains(err.message, "name has no end");
+  s = good;
+  memset(s.surfaces[0].name, 'x', sizeof s.surfaces[0].name);
+  assert_int_equal(stic_scene_validate(&s, &err), STIC_BAD_INPUT);
+  stic_test_contains(err.message, "has no end");
+  s = good;
+  s.vertices[2][1] = NAN;
+  assert_int_equal(stic_scene_validate(&s, &err), STIC_BAD_INPUT);
+  stic_test_contains(err.message, "vertex 2 is (");
+  s = good;
+  s.hold = (stic_hold)7;
+  assert_int_equal(stic_scene_validate(&s, &err), STIC_BAD_INPUT);
+  stic_test_contains(err.message, "hold is 7; expected start or button");
+}
+
+static void expect_no_sim(const stic_scene *scene, const stic_settings *settings, const char *words)
+{
+  stic_sim *sim = NULL;
+  stic_error err;
+
+  assert_int_equal(stic_sim_create(scene, settings, &sim, &err), STIC_USAGE);
+  assert_null(sim);
+  stic_test_contains(err.message, words);
+}
+
+static void test_sim_settings(void **state)
+{
+  static const double bad_h_min[] = {0, -1, 1.5, NAN};
+  stic_scene s;
+  stic_settings settings;
+
+  (void)state;
+  stic_scene_init(&s);
+  stic_scene_set_box(&s, 0.2, 0.1);
+  s.stiffness = 200;
+  s.y = 1;
+  s.surface_count = 1;
+  s.surfaces[0].normal_deg = 90;
+  for (size_t i = 0; i < sizeof bad_h_min / sizeof bad_h_min[0]; i++) {
+    stic_settings_init(&settings);
+    settings.h_min = bad_h_min[i];
+    expect_no_sim(&s, &settings, "h_min must be above 0 and at most 1");
+  }
+  stic_settings_init(&settings);
+  settings.level = STIC_LEVEL_SUBSTEP;
+  for (int n = 0; n <= 1000001; n += 1000001) {
+    settings.substeps = n;
+    expect_no_sim(&s, &settings, "substeps must be from 1 to 1000000, not ");
+  }
+}
+
 static void test_settings(void **state)
 {
   static const char *const good[] = {"frame", "event", "substep=1", "substep=1000000"};
@@ -391,11 +459,12 @@ static void test_settings(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_good_scene),   cmocka_unit_test(test_tolerated),
-    cmocka_unit_test(test_wrong_scenes), cmocka_unit_test(test_limits),
-    cmocka_unit_test(test_overrides),    cmocka_unit_test(test_override_values),
-    cmocka_unit_test(test_all_problems), cmocka_unit_test(test_normals),
-    cmocka_unit_test(test_validate),     cmocka_unit_test(test_settings),
+    cmocka_unit_test(test_good_scene),      cmocka_unit_test(test_tolerated),
+    cmocka_unit_test(test_wrong_scenes),    cmocka_unit_test(test_limits),
+    cmocka_unit_test(test_overrides),       cmocka_unit_test(test_override_values),
+    cmocka_unit_test(test_all_problems),    cmocka_unit_test(test_normals),
+    cmocka_unit_test(test_validate),        cmocka_unit_test(test_settings),
+    cmocka_unit_test(test_validate_values), cmocka_unit_test(test_sim_settings),
   };
 
   return cmocka_run_group_tests(tests, NULL, stic_test_clean_up);

@@ -853,6 +853,23 @@ static void jump_through(void **state)
 }
 
 /* Thousands of turns: theta is unwrapped, never cut at pi. */
+/* Turned by pi about an axis in the plane, the tracker's z axis points the other way: the angle is undefined there, and the
+ * last one stays. */
+static void no_angle_about_z(void **state)
+{
+  (void)state;
+  rig g;
+  rig_init(&g, 200, 0.5);
+  start_pressed_box(&g, 1, 0.5, 0.3, 0.01);
+  rig_to(&g, 0, 0.2, 1.25);
+  CLOSE(g.r.theta, 1.25, 1e-15);
+  const stic_sample turned = {g.t_ns + 1000000000, {0.1, 0.2, 0}, {0.6, 0.8, 0, 0}, 0, false};
+  stic_sim_step(g.sim, &turned, &g.r);
+  CLOSE(g.r.theta, 1.25, 1e-15);
+  CLOSE(g.r.x, 0.1, 1e-15);
+  rig_end(&g);
+}
+
 static void many_turns(void **state)
 {
   (void)state;
@@ -991,6 +1008,7 @@ int main(void)
     cmocka_unit_test(hand_on_anchor),
     cmocka_unit_test(jump_through),
     cmocka_unit_test(many_turns),
+    cmocka_unit_test(no_angle_about_z),
     cmocka_unit_test(slot),
     cmocka_unit_test(corner),
   };
