@@ -458,6 +458,56 @@ static void test_already_streaming(void **state)
   }
 }
 
+/* What was done to the lines, and when after the start: 'd', 'r' low, 'D', 'R' high; '*' the first command. */
+typedef struct lines {
+  rig rig;
+  char done[8];
+  int64_t at_ms[8];
+  int count;
+} lines;
+
+static void note(lines *l, char what)
+{
+  assert_true(l->count < 7);
+  l->at_ms[l->count] = (l->rig.now_ns - S) / MS;
+  l->done[l->count++] = what;
+}
+
+static bool lines_write(void *context, const uint8_t *bytes, size_t length)
+{
+  lines *l = context;
+
+  if (!memchr(l->done, '*', sizeof l->done))
+    note(l, '*');
+  return rig_write(&l->rig, bytes, length);
+}
+
+static bool lines_set(void *context, bool rts, bool on)
+{
+  note(context, rts ? (on ? 'R' : 'r') : (on ? 'D' : 'd'));
+  return true;
+}
+
+/* A port with modem lines: DTR is low before RTS resets the unit, then it is let go and told. */
+static void test_modem_lines(void **state)
+{
+  lines l;
+  const stic_logitech_port port = {&l, lines_write, lines_set};
+
+  (void)state;
+  memset(&l, 0, sizeof l);
+  rig_init(&l.rig);
+  stic_logitech_begin(&l.rig.driver, &port, false, l.rig.now_ns);
+  rig_run(&l.rig, 5 * (int64_t)S);
+  assert_string_equal(l.done, "drR*");
+  assert_int_equal(l.at_ms[0], 0);
+  assert_int_equal(l.at_ms[1], 200);
+  assert_int_equal(l.at_ms[2], 400);
+  assert_int_equal(l.at_ms[3], 420);
+  assert_true(l.rig.tracked > 0);
+  assert_int_equal(l.rig.unit.refused, 0);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -474,6 +524,7 @@ int main(void)
     cmocka_unit_test(test_diagnostics),
     cmocka_unit_test(test_information),
     cmocka_unit_test(test_already_streaming),
+    cmocka_unit_test(test_modem_lines),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

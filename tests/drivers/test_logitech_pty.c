@@ -249,13 +249,35 @@ static void test_no_port(void **state)
   assert_int_equal(stic_device_open("logitech:port=/dev/null,baud=1", &device, &err), STIC_USAGE);
 }
 
+/* A recording that cannot be made is told at once, and the port is free again. */
+static void test_no_recording(void **state)
+{
+  emulator unit;
+  logitech_pty pty;
+  stic_device *device = NULL;
+  stic_error err;
+  char spec[200];
+
+  (void)state;
+  emulator_init(&unit);
+  assert_true(logitech_pty_open(&pty, &unit));
+  snprintf(spec, sizeof spec, "logitech:port=%s,raw=/nonexistent/raw", pty.path);
+  assert_int_equal(stic_device_open(spec, &device, &err), STIC_CANNOT_WRITE);
+  assert_null(device);
+  stic_test_contains(err.file, "/nonexistent/raw");
+  snprintf(spec, sizeof spec, "logitech:port=%s", pty.path);
+  assert_int_equal(stic_device_open(spec, &device, &err), STIC_OK);
+  stic_device_close(device);
+  logitech_pty_close(&pty);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_stream),       cmocka_unit_test(test_drain),
     cmocka_unit_test(test_wrong_unit),   cmocka_unit_test(test_silent_unit),
     cmocka_unit_test(test_never_blocks), cmocka_unit_test(test_port),
-    cmocka_unit_test(test_no_port),
+    cmocka_unit_test(test_no_port),      cmocka_unit_test(test_no_recording),
   };
 
   return cmocka_run_group_tests(tests, NULL, stic_test_clean_up);

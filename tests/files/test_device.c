@@ -1,6 +1,7 @@
 /* Device specifications, the driver list and the trace driver. */
 #include "help.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -42,6 +43,26 @@ static void test_specifications(void **state)
   assert_string_equal(stic_spec_text(&spec, "file", ""), "a,b\\c");
   assert_true(stic_spec_flag(&spec, "loop"));
   assert_int_equal(stic_device_open("trace:file=/nonexistent/x", &device, &err), STIC_BAD_INPUT);
+}
+
+static void test_specification_too_large(void **state)
+{
+  char text[STIC_SPEC_MAX + 1] = "trace:", *end = text + strlen(text);
+  stic_device_spec spec;
+  stic_error err;
+
+  (void)state;
+  for (int i = 0; i <= STIC_SPEC_PAIRS_MAX; i++)
+    end += sprintf(end, "%sk%d=1", i > 0 ? "," : "", i);
+  assert_int_equal(stic_spec_parse(text, &spec, &err), STIC_USAGE);
+  stic_test_contains(err.message, "device trace: expected at most");
+  *strrchr(text, ',') = '\0';
+  assert_int_equal(stic_spec_parse(text, &spec, &err), STIC_OK);
+  assert_int_equal(spec.pair_count, STIC_SPEC_PAIRS_MAX);
+  memset(text, 'x', STIC_SPEC_MAX);
+  text[STIC_SPEC_MAX] = '\0';
+  assert_int_equal(stic_spec_parse(text, &spec, &err), STIC_USAGE);
+  stic_test_contains(err.message, "is longer than");
 }
 
 static void test_list(void **state)
@@ -106,6 +127,29 @@ static void test_loop(void **state)
   free(trace);
 }
 
+/* The file is gone when the next round begins. */
+static void test_loop_without_file(void **state)
+{
+  char spec[300] = "trace:loop,speed=1e6,file=", *trace = stic_test_trace(10);
+  const char *path = stic_test_write("gone.csv", trace);
+  stic_device_sample samples[35];
+  stic_device *device;
+  int n, count = 0;
+
+  (void)state;
+  free(trace);
+  strcat(spec, path);
+  assert_int_equal(stic_device_open(spec, &device, NULL), STIC_OK);
+  assert_int_equal(remove(path), 0);
+  while ((n = stic_device_poll(device, stic_clock_ns() + 1000000000, samples, 35)) >= 0)
+    count += n;
+  assert_int_equal(count, 10);
+  assert_int_equal(n, STIC_DRIVER_LOST);
+  assert_int_equal(device->state, STIC_CONNECTION_LOST);
+  stic_test_contains(device->error.message, "No such file");
+  stic_device_close(device);
+}
+
 static void test_bad_trace(void **state)
 {
   char spec[300] = "trace:file=";
@@ -125,8 +169,13 @@ static void test_bad_trace(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_specifications), cmocka_unit_test(test_list),      cmocka_unit_test(test_pace),
-    cmocka_unit_test(test_loop),           cmocka_unit_test(test_bad_trace),
+    cmocka_unit_test(test_specifications),
+    cmocka_unit_test(test_list),
+    cmocka_unit_test(test_pace),
+    cmocka_unit_test(test_loop),
+    cmocka_unit_test(test_bad_trace),
+    cmocka_unit_test(test_loop_without_file),
+    cmocka_unit_test(test_specification_too_large),
   };
 
   return cmocka_run_group_tests(tests, NULL, stic_test_clean_up);

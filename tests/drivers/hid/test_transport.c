@@ -272,6 +272,25 @@ static void test_system_refuses_strange_paths(void **state)
   assert_true(stic_clock_ns() - stic_hid_system.now(NULL) < 1000 * STIC_MS);
 }
 
+/* The drivers as the program opens them ask the system, and only for what it lists. */
+static void test_system_drivers(void **state)
+{
+  static const char *const names[] = {"spacemouse", "hydra", "gamepad"};
+
+  (void)state;
+  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+    stic_device *device = NULL;
+    stic_error err;
+    char spec[80], words[120];
+
+    snprintf(spec, sizeof spec, "%s:path=/dev/null", names[i]);
+    snprintf(words, sizeof words, "no %s found by %s at /dev/null", names[i], stic_hid_system.name);
+    assert_int_equal(stic_device_open(spec, &device, &err), STIC_NO_DEVICE);
+    assert_null(device);
+    assert_non_null(strstr(err.message, words));
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_list_has_each_path_once),
@@ -284,7 +303,8 @@ int main(void)
                                      cmocka_unit_test(test_sequence),
                                      cmocka_unit_test(test_usages),
                                      cmocka_unit_test(test_sysfs),
-                                     cmocka_unit_test(test_system_refuses_strange_paths)};
+                                     cmocka_unit_test(test_system_refuses_strange_paths),
+                                     cmocka_unit_test(test_system_drivers)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
