@@ -146,11 +146,12 @@ void stic_checker_row(stic_checker *k, const stic_result *r, const stic_event *e
       for (int n = 0; n < event_count && !said; n++)
         said = events[n].vertex == now->vertex && events[n].kind != STIC_EVENT_SNAP;
       said |= event_count == STIC_EVENTS_MAX;
-      /* A slide below 1e-12 size is none in the model's count, and no event. Sliding on (mu_s = mu_d) is no choice
-       * of JUDGE's and may end with its own rounding. */
+      /* A slide below 1e-12 size is none in the model's count, and no event; f80's are rounded when they are
+       * written. Sliding on (mu_s = mu_d) is no choice of JUDGE's and may end with its own rounding. */
       double slid = hypot(now->x - then->x, now->y - then->y);
+      double written = k->ulp < DBL_EPSILON ? DBL_EPSILON * (fabs(now->x) + fabs(now->y)) : 0;
       bool slides_on = f->mu_static == f->mu_dynamic;
-      if (!said && (slides_on || may_slide) && slid <= 1e-12 * k->size + (slides_on ? rounding : 0))
+      if (!said && (slides_on || may_slide) && slid <= 1e-12 * k->size + (slides_on ? rounding : written))
         k->tiny_slides++, said = true;
       if (!said)
         COMPLAIN("4: the anchor of vertex %d on surface %d moved by %.3g, %.3g without a slip", now->vertex,

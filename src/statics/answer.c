@@ -30,12 +30,12 @@ static void put_back(core *c, const last_pose *k)
   c->window_open = c->sliding = false;
 }
 
-/* 4 ulp of the largest coordinate; the angle rounds too. */
+/* 4 ulp of the largest coordinate, less one for the rounding of what is judged here; the angle rounds too. */
 static real coordinates_round(const core *c)
 {
-  return 4 * REAL_EPSILON *
-         (r_abs(c->p.x) + r_abs(c->p.y) + r_abs(c->hand.h.x) + r_abs(c->hand.h.y) + c->body.world_extent +
-          c->body.size * (1 + r_abs(c->theta)));
+  real far = r_abs(c->p.x) + r_abs(c->p.y) + r_abs(c->hand.h.x) + r_abs(c->hand.h.y) +
+             c->body.size * (1 + r_abs(c->theta));
+  return 3 * REAL_EPSILON * r_max(far, c->body.world_extent);
 }
 
 /* Invariant 1, and the contacts at their anchors. False for what is not finite. */

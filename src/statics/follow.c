@@ -263,7 +263,7 @@ static next_event event_fixed(core *c, const hand_path *w, real tau)
   c->hand = w->to;
   if (loads_balance(c))
     return NO_EVENT;
-  if (c->contact_count == 2)
+  if (is_pair(c))
     return (next_event){last_good_of_two(c, w, tau), false};
   real good = tau, bad = 1;
   for (int i = 0; i < ROOT_STEPS_MAX && bad - good > LOCATED; i++) {
