@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 const char stic_test_scene[] =
@@ -95,6 +96,39 @@ char *stic_test_read(const char *path)
   text[used] = '\0';
   fclose(file);
   return text;
+}
+
+const char *stic_test_rows(const char *text)
+{
+  const char *at = text ? strstr(text, "\nt,") : NULL;
+
+  at = at ? strchr(at + 1, '\n') : NULL;
+  return at ? at + 1 : "";
+}
+
+int stic_test_count_rows(const char *path)
+{
+  char *text = stic_test_read(path);
+  int count = 0;
+
+  for (const char *c = stic_test_rows(text); *c; c++)
+    count += *c == '\n';
+  free(text);
+  return count;
+}
+
+void stic_test_wait_for_rows(pid_t program, const char *path, int count)
+{
+  while (stic_test_count_rows(path) < count) {
+    if (waitpid(program, NULL, WNOHANG) != 0)
+      fail_msg("the program has ended: %s", stic_test_read(stic_test_path("err")));
+    stic_test_pause(10);
+  }
+}
+
+void stic_test_pause(int ms)
+{
+  nanosleep(&(struct timespec){ms / 1000, ms % 1000 * 1000000L}, NULL);
 }
 
 int stic_test_count_entries(const char *part)

@@ -29,6 +29,15 @@ const char *stic_test_write_bytes(const char *name, const void *data, size_t len
 /* A file's text, to be freed; NULL if there is none. */
 char *stic_test_read(const char *path);
 
+/* The rows of a trace's or log's text: what follows its header line "t,..."; "" if there is none. */
+const char *stic_test_rows(const char *text);
+/* How many rows a file has; 0 without a file. */
+int stic_test_count_rows(const char *path);
+/* Waits until it has `count` at least; fails if the program that writes it ends before. */
+void stic_test_wait_for_rows(pid_t program, const char *path, int count);
+
+void stic_test_pause(int ms);
+
 /* How many entries the folder has whose names contain `part`. */
 int stic_test_count_entries(const char *part);
 

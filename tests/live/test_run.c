@@ -30,21 +30,7 @@ static int set_up(void **state)
   return 0;
 }
 
-static void pause_ms(int64_t ms)
-{
-  stic_clock_sleep_until(stic_clock_ns() + ms * MS);
-}
-
 /* ---- what files hold ----------------------------------------------------------------------- */
-
-/* The text from the first row on; "" without rows. */
-static const char *rows_of(const char *text, const char *header)
-{
-  const char *at = text ? strstr(text, header) : NULL;
-
-  at = at ? strchr(at + 1, '\n') : NULL;
-  return at ? at + 1 : "";
-}
 
 static int count_lines(const char *text)
 {
@@ -55,28 +41,14 @@ static int count_lines(const char *text)
   return count;
 }
 
-static int rows_in(const char *path, const char *header)
-{
-  char *text = stic_test_read(path);
-  const int count = count_lines(rows_of(text, header));
-
-  free(text);
-  return count;
-}
-
 static int recorded(void)
 {
-  return rows_in(record, "\nt,x,");
+  return stic_test_count_rows(record);
 }
 
-/* Waits for so many recorded samples. */
 static void wait_for_recorded(pid_t child, int count)
 {
-  while (recorded() < count) {
-    if (waitpid(child, NULL, WNOHANG) != 0)
-      fail_msg("the run has ended: %s", stic_test_read(stic_test_path("err")));
-    pause_ms(10);
-  }
+  stic_test_wait_for_rows(child, record, count);
 }
 
 /* Replays the recording; the text of its log, to be freed. */
@@ -99,9 +71,9 @@ static void check_replay(void)
        *again_events = stic_test_read(stic_test_path("again-events.csv"));
 
   assert_non_null(live);
-  assert_true(count_lines(rows_of(live, "\nt,state")) > 0);
-  assert_int_equal(count_lines(rows_of(live, "\nt,state")), recorded());
-  assert_string_equal(rows_of(live, "\nt,state"), rows_of(again, "\nt,state"));
+  assert_true(count_lines(stic_test_rows(live)) > 0);
+  assert_int_equal(count_lines(stic_test_rows(live)), recorded());
+  assert_string_equal(stic_test_rows(live), stic_test_rows(again));
   assert_string_equal(live_events, again_events);
   free(live);
   free(again);
@@ -179,7 +151,7 @@ static void test_trace(void **state)
   stic_test_program("replay", scene, trace, "--log", stic_test_path("again.csv"), NULL);
   log = stic_test_read(log_path);
   again = stic_test_read(stic_test_path("again.csv"));
-  assert_string_equal(rows_of(log, "\nt,state"), rows_of(again, "\nt,state"));
+  assert_string_equal(stic_test_rows(log), stic_test_rows(again));
   free(log);
   free(again);
 }
@@ -214,10 +186,10 @@ static void test_silent_pipe(void **state)
   assert_int_equal(mkfifo(pipe_path, 0600), 0);
   fd = open(pipe_path, O_RDWR);
   child = stic_test_start(pipe_path, arguments);
-  pause_ms(300);
+  stic_test_pause(300);
   stop(child, SIGINT);
   close(fd);
-  assert_int_equal(rows_in(log_path, "\nt,state"), 0);
+  assert_int_equal(stic_test_count_rows(log_path), 0);
 }
 
 static void test_kill(void **state)
@@ -236,8 +208,8 @@ static void test_kill(void **state)
   assert_int_equal(stic_test_wait(child), 1000 + SIGKILL);
   out = stic_test_read(stic_test_path("out")); /* before replay has it */
   again = replay();
-  rows = rows_of(out, "\nt,state");
-  again_rows = rows_of(again, "\nt,state");
+  rows = stic_test_rows(out);
+  again_rows = stic_test_rows(again);
   end = strrchr(rows, '\n');
   /* What is in the log was recorded before. */
   assert_true(count_lines(again_rows) >= 300);
@@ -279,8 +251,7 @@ static void test_full_disk(void **state)
   log = stic_test_read(stic_test_path("full-log"));
   assert_true(strlen(log) == 40 * 512);
   *strrchr(log, '\n') = '\0';
-  assert_memory_equal(rows_of(log, "\nt,state"), rows_of(again, "\nt,state"),
-                      strlen(rows_of(log, "\nt,state")));
+  assert_memory_equal(stic_test_rows(log), stic_test_rows(again), strlen(stic_test_rows(log)));
   free(log);
   free(again);
   /* ... and here the recording. */
@@ -296,8 +267,8 @@ static void test_full_disk(void **state)
   free(err);
   log = stic_test_read(log_path);
   again = replay();
-  assert_true(count_lines(rows_of(again, "\nt,state")) > 100);
-  assert_string_equal(rows_of(log, "\nt,state"), rows_of(again, "\nt,state"));
+  assert_true(count_lines(stic_test_rows(again)) > 100);
+  assert_string_equal(stic_test_rows(log), stic_test_rows(again));
   free(log);
   free(again);
 }
@@ -337,7 +308,7 @@ static void test_slow_reader(void **state)
   fd = open(fifo, O_RDWR);
   child = stic_test_start(NULL, arguments);
   wait_for_recorded(child, 1);
-  pause_ms(1500);
+  stic_test_pause(1500);
   kill(child, SIGTERM);
   /* It ends only when all is read; the test's own end of the pipe must not hold it open then. */
   while (used < 65536 && (n = read(fd, text + used, 4096)) > 0)
@@ -353,7 +324,7 @@ static void test_slow_reader(void **state)
   text[used] = '\0';
   assert_int_equal(stic_test_wait(child), 0);
   again = replay();
-  assert_string_equal(rows_of(text, "\nt,state"), rows_of(again, "\nt,state"));
+  assert_string_equal(stic_test_rows(text), stic_test_rows(again));
   assert_int_equal(summary("lost_samples"), 0);
   /* More than a pipe holds waited, so the solver was not held up. */
   assert_true(summary("rows_queued_most") > 300);
@@ -378,7 +349,7 @@ static pid_t start_emulator(const char *link)
     _exit(98);
   }
   while (access(link, F_OK) != 0)
-    pause_ms(10);
+    stic_test_pause(10);
   return child;
 }
 

@@ -90,7 +90,7 @@ static Window largest_window(Display *display)
 
 bool stic_xvfb_find_window(stic_xvfb *x)
 {
-  for (int i = 0; i < 400 && !x->window; i++) {
+  for (int i = 0; i < 1200 && !x->window; i++) {
     x->window = largest_window(x->display);
     if (!x->window)
       pause_ms(50);

@@ -23,7 +23,7 @@ typedef struct stic_xvfb {
 bool stic_xvfb_start(stic_xvfb *x);
 void stic_xvfb_stop(stic_xvfb *x);
 
-/* Waits up to 20 s for a window to be there and gives it the keyboard. */
+/* Waits up to a minute for a window to be there and gives it the keyboard. */
 bool stic_xvfb_find_window(stic_xvfb *x);
 void stic_xvfb_window_size(stic_xvfb *x, int *width, int *height);
 
