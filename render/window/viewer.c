@@ -353,6 +353,8 @@ static stic_status handle(stic_viewer *v, const stic_window_event *e, stic_error
     if (v->scene.hold == STIC_HOLD_START && v->mouse && v->heard)
       v->parked = v->dirty = true;
     break;
+  case STIC_WINDOW_LOST:
+    return stic_error_set(err, STIC_CANNOT_WRITE, NULL, 0, "the window's display is gone");
   case STIC_WINDOW_SHOWN:
     v->dirty = true;
     v->module->size(v->window, &width, &height);

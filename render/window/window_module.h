@@ -6,7 +6,7 @@
 #include "render.h"
 
 /* Changes with what follows: a module of another build is not used. */
-#define STIC_WINDOW_MODULE 1
+#define STIC_WINDOW_MODULE 2
 
 /* Keys without a character of their own. */
 enum { STIC_KEY_ESCAPE = 0x100, STIC_KEY_F1, STIC_KEY_F11 };
@@ -21,7 +21,8 @@ typedef enum stic_window_kind {
   STIC_WINDOW_MOTION, /* the pointer moved */
   STIC_WINDOW_BUTTON, /* `buttons` changed */
   STIC_WINDOW_WHEEL,  /* `wheel` notches, up is positive */
-  STIC_WINDOW_LEAVE   /* the pointer left the window */
+  STIC_WINDOW_LEAVE,  /* the pointer left the window */
+  STIC_WINDOW_LOST    /* the display is gone; the window is only to be closed */
 } stic_window_kind;
 
 /* One thing that happened. The pointer's fields hold for MOTION, BUTTON and WHEEL. */
@@ -43,7 +44,7 @@ typedef struct stic_window_module {
    * STIC_NO_MEMORY. The caller owns `*window`. */
   stic_status (*open)(const char *title, int width, int height, stic_window **window, stic_error *err);
 
-  /* Waits up to `wait_ms` for something to happen: false if nothing did. */
+  /* Waits up to `wait_ms` for something to happen: false if nothing did. LOST is told until the window is closed. */
   bool (*next)(stic_window *window, int wait_ms, stic_window_event *event);
 
   /* Size of the content, px of the screen. */

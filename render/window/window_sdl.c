@@ -4,6 +4,9 @@
 #include "error.h"
 
 #include <SDL.h>
+#if defined(STIC_WITH_XLIB)
+#include <SDL_syswm.h>
+#endif
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,6 +15,7 @@ struct stic_window {
   SDL_Renderer *renderer;
   SDL_Texture *texture; /* of the last picture's size; NULL before the first */
   int width, height;    /* px, of the texture */
+  bool lost;            /* the display is gone */
 
   /* The pointer as of the last event taken; SDL itself is ahead of its queue. */
   int x, y;         /* in the desktop's units */
@@ -19,10 +23,49 @@ struct stic_window {
   Uint16 modifiers; /* KMOD_ */
 };
 
+/* ---- a display that goes away -------------------------------------------------------------- */
+
+#if defined(STIC_WITH_XLIB)
+static int say_nothing(Display *display)
+{
+  (void)display;
+  return 0;
+}
+
+static void note_loss(Display *display, void *window)
+{
+  (void)display;
+  ((stic_window *)window)->lost = true;
+}
+
+/* Xlib would end the program, and with it what is still to be written. */
+static void survive_loss(stic_window *w)
+{
+  SDL_SysWMinfo info;
+
+  SDL_VERSION(&info.version);
+  if (!SDL_GetWindowWMInfo(w->window, &info) || info.subsystem != SDL_SYSWM_X11)
+    return;
+  XSetIOErrorHandler(say_nothing);
+  XSetIOErrorExitHandler(info.info.x11.display, note_loss, w);
+}
+#else
+static void survive_loss(stic_window *w)
+{
+  (void)w;
+}
+#endif
+
+/* ---- the window ---------------------------------------------------------------------------- */
+
 static void window_close(stic_window *w)
 {
   if (!w)
     return;
+  if (w->lost) { /* SDL has a second connection, on which Xlib would still end the program */
+    free(w);
+    return;
+  }
   if (w->texture)
     SDL_DestroyTexture(w->texture);
   if (w->renderer)
@@ -62,6 +105,7 @@ static stic_status window_open(const char *title, int width, int height, stic_wi
     return STIC_CANNOT_WRITE;
   }
   SDL_SetWindowMinimumSize(w->window, STIC_PICTURE_WIDTH_MIN, STIC_PICTURE_HEIGHT_MIN);
+  survive_loss(w);
   *window = w;
   return STIC_OK;
 }
@@ -179,8 +223,13 @@ static bool window_next(stic_window *w, int wait_ms, stic_window_event *event)
 {
   SDL_Event from;
 
-  if (!SDL_WaitEventTimeout(&from, wait_ms))
+  if (!w->lost && !SDL_WaitEventTimeout(&from, wait_ms) && !w->lost)
     return false;
+  if (w->lost) {
+    memset(event, 0, sizeof *event);
+    event->kind = STIC_WINDOW_LOST;
+    return true;
+  }
   do {
     if (translate(w, &from, event))
       return true;

@@ -115,6 +115,7 @@ static void print_findings(const findings *f)
   if (trackers == 0)
     printf("No tracker is connected%s. Plug one in and ask again, or go on without one:\n"
            "    stiction run SCENE --device trace:file=TRACE   a recorded hand\n"
+           "    stiction run SCENE --device mouse --view       the mouse as the hand\n"
            "    stiction monitor --device sample               a hand that moves by itself\n\n",
            ports > 0 ? ", unless one is behind a serial port" : "");
   print_permissions(f, true);

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 STICTION = os.environ["STICTION"]
 SANITIZED = os.environ.get("SANITIZED") == "1"  # address sanitizer: shadow memory instead of a limit
@@ -79,7 +80,17 @@ def start(arguments, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, before=li
                             preexec_fn=before)
 
 
-def wait(process, timeout=60):
+def await_handlers(process):
+    """Until the program catches SIGTERM, or has ended: a signal before that is not its own."""
+    while process.poll() is None:
+        with open(f"/proc/{process.pid}/status", encoding="ascii") as status:
+            caught = next(int(line.split()[1], 16) for line in status if line.startswith("SigCgt"))
+        if caught >> (signal.SIGTERM - 1) & 1:
+            return
+        time.sleep(0.005)
+
+
+def wait(process, timeout=500):  # hung, however loaded the machine is
     try:
         out, err = process.communicate(timeout=timeout)
     except subprocess.TimeoutExpired:

@@ -70,7 +70,7 @@ def files_of(out):
 
 def chosen(count, slow):
     """All of them on request and where a run takes milliseconds; else the first ones and some of the rest."""
-    first, some = (3, 3) if slow else (25, 5)
+    first, some = (2, 2) if slow else (10, 4)
     if FULL or count <= first + some:
         return range(1, count + 1)
     return [*range(1, first + 1), *(first + (i + 1) * (count - first) // some for i in range(some))]

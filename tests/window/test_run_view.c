@@ -5,6 +5,7 @@
 #include "../files/help.h"
 
 #include <math.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -193,6 +194,57 @@ static void test_mouse(void **state)
   stic_xvfb_stop(&x);
 }
 
+/* Waits until the program has said this. */
+static void await_words(const char *words)
+{
+  for (int i = 0; i < TRIES; i++) {
+    char *said = stic_test_read(stic_test_path("err"));
+    const bool found = said && strstr(said, words);
+
+    free(said);
+    if (found)
+      return;
+    stic_test_pause(20);
+  }
+  fail_msg("it did not say \"%s\"", words);
+}
+
+/* Without the display a run with a tracker goes on, one by the mouse ends; all is written either way. */
+static void check_lost_display(const char *device, bool ends)
+{
+  const char *hand = stic_test_path("lost-hand.csv"), *log = stic_test_path("lost-log.csv");
+  stic_xvfb x;
+  pid_t child;
+
+  if (!stic_xvfb_start(&x))
+    skip();
+  remove(hand);
+  child = stic_test_start(NULL, (const char *const[]){"run", SCENE, "--device", device, "--view", "--record",
+                                                      hand, "--log", log, "--size", "400x300", NULL});
+  assert_true(stic_xvfb_find_window(&x));
+  for (int i = 0; i < TRIES && stic_test_count_rows(hand) == 0; i++) {
+    stic_xvfb_point(&x, 200 + i % 10, 150);
+    stic_test_pause(20);
+  }
+  stic_xvfb_stop(&x);
+  if (!ends) {
+    await_words("the window's display is gone");
+    stic_test_wait_for_rows(child, hand, stic_test_count_rows(hand) + 10);
+    kill(child, SIGINT);
+  }
+  assert_int_equal(stic_test_wait(child), 5);
+  await_words("the window's display is gone");
+  assert_true(stic_test_count_rows(log) > 0);
+  assert_int_equal(stic_test_count_rows(log), stic_test_count_rows(hand));
+}
+
+static void test_lost_display(void **state)
+{
+  (void)state;
+  check_lost_display("sample", false);
+  check_lost_display("mouse", true);
+}
+
 static void test_refusals(void **state)
 {
   const stic_test_run *run = stic_test_program("run", SCENE, "--device", "mouse", NULL);
@@ -210,7 +262,8 @@ static void test_refusals(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_refusals), cmocka_unit_test(test_mouse)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_refusals), cmocka_unit_test(test_mouse),
+                                     cmocka_unit_test(test_lost_display)};
 
   return cmocka_run_group_tests_name("run_view", tests, NULL, stic_test_clean_up);
 }
