@@ -117,7 +117,7 @@ static stic_sample sample_of(stic_extreme *e, int i, const stic_result *last)
 {
   stic_sample s;
 
-  if (e->given)
+  if (!e->move)
     return e->given[i];
   e->move(e, i, i > 0 ? last : NULL);
   memset(&s, 0, sizeof s);
