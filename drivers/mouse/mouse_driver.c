@@ -3,19 +3,17 @@
 #include "../../src/error.h"
 #include "../../src/io/timing.h"
 #include "../../src/live/ring.h"
+#include "../../src/live/wake.h"
 
-#include <fcntl.h>
-#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 #define QUEUE 1024 /* samples: a second of the fastest mouse */
 
 typedef struct mouse_device {
   stic_device base;
   stic_ring *samples; /* the window writes, poll() reads */
-  int wake[2];        /* a byte for each sample; what no longer fits was not needed to wake */
+  stic_wake wake;     /* sent by the window with every sample */
   int64_t last_ns;    /* the window's */
   uint64_t sequence;
   int64_t overruns; /* atomic: counted by the window, told by poll() */
@@ -25,23 +23,9 @@ static void mouse_close(stic_device *device)
 {
   mouse_device *d = (mouse_device *)device;
 
-  for (int i = 0; i < 2; i++) {
-    if (d->wake[i] >= 0)
-      close(d->wake[i]);
-  }
+  stic_wake_destroy(&d->wake);
   stic_ring_destroy(d->samples);
   free(d);
-}
-
-static stic_status make_pipe(mouse_device *d, stic_error *err)
-{
-  if (pipe(d->wake) != 0)
-    return stic_error_set(err, STIC_NO_DEVICE, NULL, 0, "device mouse: no pipe between window and solver");
-  for (int i = 0; i < 2; i++) {
-    fcntl(d->wake[i], F_SETFL, O_NONBLOCK);
-    fcntl(d->wake[i], F_SETFD, FD_CLOEXEC);
-  }
-  return STIC_OK;
 }
 
 static stic_status mouse_open(const stic_device_spec *spec, stic_device **device, stic_error *err)
@@ -53,10 +37,10 @@ static stic_status mouse_open(const stic_device_spec *spec, stic_device **device
   if (!d)
     return stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
   d->base.driver = &stic_mouse_driver;
-  d->wake[0] = d->wake[1] = -1;
+  d->wake.ends[0] = d->wake.ends[1] = -1;
   status = stic_ring_create(sizeof(stic_device_sample), QUEUE, &d->samples, err);
   if (status == STIC_OK)
-    status = make_pipe(d, err);
+    status = stic_wake_create(&d->wake, err);
   if (status != STIC_OK) {
     mouse_close(&d->base);
     return status;
@@ -71,7 +55,6 @@ bool stic_mouse_feed(stic_device *device, const stic_mouse_hand *hand)
   mouse_device *d = (mouse_device *)device;
   stic_device_sample *sample = stic_ring_slot(d->samples);
   const int64_t now_ns = stic_clock_ns();
-  ssize_t woken;
 
   if (!sample) {
     __atomic_add_fetch(&d->overruns, 1, __ATOMIC_RELAXED);
@@ -82,23 +65,7 @@ bool stic_mouse_feed(stic_device *device, const stic_mouse_hand *hand)
   sample->t_ns = sample->source_ns = d->last_ns;
   sample->sequence = d->sequence++;
   stic_ring_put(d->samples);
-  woken = write(d->wake[1], "", 1);
-  (void)woken; /* a full pipe wakes as well */
-  return true;
-}
-
-/* Until the window has fed something: false if not in time, or on a signal. Takes bytes that earlier samples have
- * left as well, so the caller looks and, if need be, waits again. */
-static bool wait_for_window(const mouse_device *d, int64_t until_ns)
-{
-  struct pollfd wake = {d->wake[0], POLLIN, 0};
-  const int64_t left_ms = (until_ns - stic_clock_ns() + 999999) / 1000000;
-  char bytes[QUEUE];
-
-  if (left_ms <= 0 || poll(&wake, 1, left_ms < 60000 ? (int)left_ms : 60000) < 0)
-    return false;
-  while (read(d->wake[0], bytes, sizeof bytes) == (ssize_t)sizeof bytes)
-    ;
+  stic_wake_send(&d->wake);
   return true;
 }
 
@@ -108,7 +75,8 @@ static int mouse_poll(stic_device *device, int64_t until_ns, stic_device_sample 
   const stic_device_sample *front;
   int count = 0;
 
-  while (!stic_ring_front(d->samples) && wait_for_window(d, until_ns))
+  /* What earlier samples sent is still there and wakes as well: look, and wait again. */
+  while (!stic_ring_front(d->samples) && stic_wake_wait(&d->wake, until_ns))
     ;
   while (count < capacity && (front = stic_ring_front(d->samples))) {
     samples[count++] = *front;

@@ -43,7 +43,7 @@ void stic_wake_send(const stic_wake *w)
   (void)n;
 }
 
-void stic_wake_wait(const stic_wake *w, int64_t until_ns)
+bool stic_wake_wait(const stic_wake *w, int64_t until_ns)
 {
   const int64_t left_ns = until_ns == INT64_MAX ? 0 : until_ns - stic_clock_ns();
   struct timespec left = {0, 0};
@@ -57,8 +57,9 @@ void stic_wake_wait(const stic_wake *w, int64_t until_ns)
   FD_ZERO(&ready);
   FD_SET(w->ends[0], &ready);
   /* poll() knows whole milliseconds only. */
-  if (pselect(w->ends[0] + 1, &ready, NULL, NULL, until_ns == INT64_MAX ? NULL : &left, NULL) > 0) {
-    while (read(w->ends[0], taken, sizeof taken) == (ssize_t)sizeof taken)
-      ;
-  }
+  if (pselect(w->ends[0] + 1, &ready, NULL, NULL, until_ns == INT64_MAX ? NULL : &left, NULL) <= 0)
+    return false;
+  while (read(w->ends[0], taken, sizeof taken) == (ssize_t)sizeof taken)
+    ;
+  return true;
 }

@@ -16,7 +16,7 @@ void stic_wake_destroy(stic_wake *wake);
 void stic_wake_send(const stic_wake *wake);
 
 /* Waits until it is sent, until `until_ns` (CLOCK_MONOTONIC; INT64_MAX: for ever), or a signal that the thread
- * takes. What was sent before counts. One thread only. Real-time: yes. */
-void stic_wake_wait(const stic_wake *wake, int64_t until_ns);
+ * takes: false without a sending. What was sent before counts. One thread only. Real-time: yes. */
+bool stic_wake_wait(const stic_wake *wake, int64_t until_ns);
 
 #endif
