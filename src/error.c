@@ -18,8 +18,8 @@ static void one_line(char *text)
   }
 }
 
-stic_status stic_error_set(stic_error *err, stic_status status, const char *file, int64_t line,
-                           const char *format, ...)
+stic_status(stic_error_set)(stic_error *err, stic_status status, const char *file, int64_t line,
+                            const char *format, ...)
 {
   va_list args;
 
