@@ -95,6 +95,7 @@ typedef struct bench {
   const stic_extremes_options *options;
   stic_outfile *csv;
   stic_error err;
+  bool no_memory;       /* in one of the cases */
   stic_sample *samples; /* of the case at hand, for files */
   int sample_count, sample_room;
   tally tallies[PRECISIONS]; /* of the sweep at hand */
@@ -205,8 +206,10 @@ static bool open_lane(bench *b, lane *l, const stic_extreme *e, int precision, i
   settings.precision = precisions[precision];
   settings.substeps = SUBSTEPS;
   l->t.cases = 1;
-  if (stic_sim_create(&e->scene, &settings, &l->sim, &b->err) != STIC_OK)
+  if (stic_sim_create(&e->scene, &settings, &l->sim, &b->err) != STIC_OK) {
+    b->no_memory |= b->err.status == STIC_NO_MEMORY; /* no refusal of the scene */
     return false;
+  }
   stic_sim_time_stages(l->sim, true);
   stic_checker_init(&l->checker, &e->scene, settings.precision);
   return true;
@@ -658,6 +661,8 @@ static int finish(bench *b, stic_status status)
 
   for (int p = 0; p < PRECISIONS; p++)
     failures += b->total[p].failures;
+  if (status == STIC_OK && b->no_memory)
+    status = stic_error_set(&b->err, STIC_NO_MEMORY, NULL, 0, "out of memory");
   if (status == STIC_OK && stic_cli_signal() == 0 && b->options->picture)
     status = write_picture(b);
   if (status != STIC_OK || stic_cli_signal() != 0) {

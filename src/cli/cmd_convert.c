@@ -93,13 +93,10 @@ static stic_status recognize(const char *path, format *found, stic_error *err)
   if (*found == FORMAT_AUTO && status == STIC_LINE_READ && is_letter_and_colon(text, length))
     *found = FORMAT_HID;
   error = errno;
+  if (*found == FORMAT_AUTO && status == STIC_LINE_READ && stic_pose_recognize(text, length, &pose))
+    *found = pose == STIC_POSE_TUM ? FORMAT_TUM : FORMAT_EUROC;
   stic_line_reader_close(lines);
-  if (*found != FORMAT_AUTO)
-    return STIC_OK;
-  if (!stic_pose_recognize(path, &pose))
-    return refuse_format(path, status, error, err);
-  *found = pose == STIC_POSE_TUM ? FORMAT_TUM : FORMAT_EUROC;
-  return STIC_OK;
+  return *found != FORMAT_AUTO ? STIC_OK : refuse_format(path, status, error, err);
 }
 
 static stic_status choose_format(const options *o, const char *path, format *found, stic_error *err)

@@ -223,22 +223,10 @@ stic_pose_status stic_pose_next(stic_pose_reader *r, stic_sample *pose, stic_err
   }
 }
 
-bool stic_pose_recognize(const char *path, stic_pose_format *format)
+bool stic_pose_recognize(const char *line, size_t length, stic_pose_format *format)
 {
-  stic_line_reader *lines;
-  stic_line_status status;
   stic_field fields[COLUMNS];
-  const char *text;
-  size_t length;
 
-  if (stic_line_reader_open(path, &lines, NULL) != STIC_OK)
-    return false;
-  do
-    status = stic_line_reader_next(lines, &text, &length);
-  while (status == STIC_LINE_WAIT || (status == STIC_LINE_READ && (length == 0 || text[0] == '#')));
-  *format = status == STIC_LINE_READ && memchr(text, ',', length) ? STIC_POSE_EUROC : STIC_POSE_TUM;
-  if (status == STIC_LINE_READ && split(*format, text, length, fields, COLUMNS) < COLUMNS)
-    status = STIC_LINE_END;
-  stic_line_reader_close(lines);
-  return status == STIC_LINE_READ;
+  *format = memchr(line, ',', length) ? STIC_POSE_EUROC : STIC_POSE_TUM;
+  return split(*format, line, length, fields, COLUMNS) == COLUMNS;
 }

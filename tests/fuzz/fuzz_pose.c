@@ -40,7 +40,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   const char *path = memory_file_write(&file, data, size);
   stic_pose_format format;
 
-  stic_pose_recognize(path, &format);
+  stic_pose_recognize((const char *)data, size, &format);
   for (int i = 0; i < 4; i++)
     read_all(path, i & 1 ? STIC_POSE_TUM : STIC_POSE_EUROC, i > 1);
   return 0;
