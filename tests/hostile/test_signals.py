@@ -127,15 +127,15 @@ def waiting_readers():
         time.sleep(0.1)
         for _, process, _ in waiting:
             process.terminate()
-        for command, process, fd in waiting:
-            done = wait(process)
+        ended = [wait(process) for _, process, _ in waiting]
+        for (command, _, fd), done in zip(waiting, ended):
             if fd >= 0:
                 os.close(fd)
             what = " ".join(command).replace(folder, ".") + (", opened" if open_first else "")
             # Opening a device is not yet running, and one that has not opened may not have got to main().
             want = [143] + [0] * (command[0] in LIVE) + [1015] * (not open_first)
             check(f"{what}: ended", done.code in want, done)
-            check(f"{what}: nothing left", not leftovers(), leftovers())
+        check("waiting readers: nothing left", not leftovers(), leftovers())
 
 
 def a_gap_of_years():
