@@ -1,6 +1,7 @@
 #include "tracker_yaml.h"
 
 #include "../../src/error.h"
+#include "../../src/io/trace_csv.h"
 #include "../../src/number.h"
 #include "../../src/yaml_text.h"
 
@@ -443,4 +444,18 @@ void stic_tracker_apply(stic_tracker *t, stic_device_sample *sample)
     stic_rate_apply(&t->integrator, sample);
   if (t->settings.filtered)
     stic_one_euro_apply(&t->filter, sample);
+}
+
+bool stic_tracker_solvable(const stic_device_sample *from, stic_sample *to)
+{
+  const unsigned known = STIC_SAMPLE_POSITION | STIC_SAMPLE_ORIENTATION;
+
+  if ((from->flags & known) != known)
+    return false;
+  memset(to, 0, sizeof *to);
+  memcpy(to->position, from->position, sizeof to->position);
+  memcpy(to->orientation, from->orientation, sizeof to->orientation);
+  to->buttons = from->buttons & ~STIC_TRACE_BUTTON_LOST;
+  to->lost = !(from->flags & STIC_SAMPLE_TRACKED);
+  return true;
 }

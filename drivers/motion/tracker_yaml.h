@@ -54,4 +54,8 @@ void stic_tracker_begin(stic_tracker *tracker, const stic_tracker_settings *sett
 /* Frame, then integrator (rate devices), then filter, in place. Real-time: yes. */
 void stic_tracker_apply(stic_tracker *tracker, stic_device_sample *sample);
 
+/* What the solver is given of a sample in the room, but for its time, which stays 0. False while nobody knows where the
+ * hand is. Real-time: yes. */
+bool stic_tracker_solvable(const stic_device_sample *from, stic_sample *to);
+
 #endif

@@ -156,21 +156,15 @@ static stic_status put(conversion *c, stic_sample *sample, const char *path, sti
 static stic_status put_device_sample(conversion *c, stic_device_sample *from, const char *path,
                                      stic_error *err)
 {
-  const unsigned known = STIC_SAMPLE_POSITION | STIC_SAMPLE_ORIENTATION;
   stic_sample to;
 
   if (c->tracked)
     stic_tracker_apply(&c->tracker, from);
-  if ((from->flags & known) != known) {
+  if (!stic_tracker_solvable(from, &to)) {
     c->unknown++;
     return STIC_OK;
   }
-  memset(&to, 0, sizeof to);
   to.t_ns = from->t_ns;
-  memcpy(to.position, from->position, sizeof to.position);
-  memcpy(to.orientation, from->orientation, sizeof to.orientation);
-  to.buttons = from->buttons & ~STIC_TRACE_BUTTON_LOST;
-  to.lost = !(from->flags & STIC_SAMPLE_TRACKED);
   return put(c, &to, path, err);
 }
 

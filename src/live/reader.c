@@ -1,24 +1,16 @@
 /* The reader: waits for the device, brings its samples into the room and queues all of them. */
-#include <string.h>
-
-#include "../io/trace_csv.h"
 #include "parts.h"
 
 #define BATCH 64 /* samples taken at once */
 
-/* What the solver is given: time since the first sample, or the source's own. */
-static void convert(live_reader *r, const stic_device_sample *from, live_sample *to)
+/* The solver's time: since the first sample, or the source's own. */
+static void set_time(live_reader *r, const stic_device_sample *from, live_sample *to)
 {
   if (!r->begun)
     r->start_ns = from->t_ns;
   r->begun = true;
-  memset(to, 0, sizeof *to);
   to->zero_ns = r->start_ns;
   to->sample.t_ns = r->own_time ? from->source_ns : from->t_ns - r->start_ns;
-  memcpy(to->sample.position, from->position, sizeof to->sample.position);
-  memcpy(to->sample.orientation, from->orientation, sizeof to->sample.orientation);
-  to->sample.buttons = from->buttons & ~STIC_TRACE_BUTTON_LOST;
-  to->sample.lost = !(from->flags & STIC_SAMPLE_TRACKED);
 }
 
 /* A place in the queue; NULL: full. A source that waits for nobody's hand waits for the solver instead. */
@@ -35,20 +27,21 @@ static live_sample *place(stic_live *live)
 
 static void queue(stic_live *live, stic_device_sample *from, int64_t since_ns)
 {
-  const unsigned known = STIC_SAMPLE_POSITION | STIC_SAMPLE_ORIENTATION;
   live_reader *r = &live->reader;
+  stic_sample sample;
   live_sample *to;
 
   if (!stic_supervisor_driver(r->device)->in_room)
     stic_tracker_apply(&r->tracker, from);
-  if ((from->flags & known) != known)
+  if (!stic_tracker_solvable(from, &sample))
     return; /* nobody knows yet where the hand is */
   to = place(live);
   if (!to) {
     r->lost++;
     return;
   }
-  convert(r, from, to);
+  to->sample = sample;
+  set_time(r, from, to);
   to->arrived_ns = stic_clock_ns();
   to->read_ns = to->arrived_ns - since_ns;
   stic_timing_add(&r->timing, STIC_STAGE_READ, to->read_ns);
