@@ -27,6 +27,16 @@ static const char *const level_names[LEVELS] = {"frame", "substep=3", "event"};
 /* RELAX calls in one sample: 10,000 at level event, and the last one. */
 static const int relaxations_bound[LEVELS] = {1, SUBSTEPS, 10000 + 25};
 
+/* Steps of root finding in one sample. A RELAX has one search of 256 steps a stage, one for every pair of vertex and
+ * surface on the way to the hand, and 2,000 steps of the viscous flow; at level event 700,000 bound all RELAX calls but
+ * the last event's. */
+static int iterations_bound(const stic_scene *s, int level)
+{
+  const int one = 256 * (STAGES_BOUND + s->vertex_count * s->surface_count) + 2000;
+
+  return levels[level] == STIC_LEVEL_EVENT ? 700000 + 25 * one : relaxations_bound[level] * one;
+}
+
 /* ---- what is counted ------------------------------------------------------------------------- */
 
 typedef struct tally {
@@ -153,6 +163,8 @@ static void check_work(lane *l, int level, bool must_stand, char *complaint, siz
     snprintf(complaint, size, "%d stages in a RELAX", report->stages_worst);
   if (report->relaxations > relaxations_bound[level])
     snprintf(complaint, size, "%d RELAX calls in a sample", report->relaxations);
+  if (report->iterations > iterations_bound(l->checker.scene, level))
+    snprintf(complaint, size, "%d steps of root finding in a sample", report->iterations);
   if (must_stand) {
     now.t_ns = l->before.t_ns;
     now.flags = l->before.flags;
@@ -423,17 +435,17 @@ static void add_heat(stic_heat_map *map, const stic_extreme *e, const tally *t)
     (stic_heat_point){e->a, e->b, t->frames > t->no_answer ? fmin(17, fmax(0, digits)) : NAN};
 }
 
-/* -1: the sweep has no picture. */
-static int picture_of(const char *sweep)
+/* Which row of maps shows a sweep, -1: none. */
+static int map_row(const char *sweep)
 {
   return strcmp(sweep, "k_p-mu") == 0 ? 0 : strcmp(sweep, "distance") == 0 ? 1 : -1;
 }
 
 static stic_heat_map *map_of(bench *b, const char *sweep, int precision)
 {
-  const int which = picture_of(sweep);
+  const int row = map_row(sweep);
 
-  return which < 0 || !b->options->picture ? NULL : &b->maps[which * PRECISIONS + precision];
+  return row < 0 || !b->options->picture ? NULL : &b->maps[row * PRECISIONS + precision];
 }
 
 /* ---- tables ------------------------------------------------------------------------------------ */
@@ -558,7 +570,7 @@ static stic_status run_sweeps(bench *b)
     found |= !wanted || strcmp(wanted, stic_sweeps[i].name) == 0;
   if (!found)
     return no_sweep(wanted, &b->err);
-  if (wanted && b->options->picture && picture_of(wanted) < 0)
+  if (wanted && b->options->picture && map_row(wanted) < 0)
     return stic_error_set(&b->err, STIC_USAGE, NULL, 0,
                           "bench extremes: --picture is of the sweeps k_p-mu and distance");
   print_head();
@@ -687,7 +699,11 @@ int stic_bench_extremes(const stic_extremes_options *options)
     return STIC_NO_MEMORY;
   }
   b->options = options;
-  if (options->csv)
+  if (options->picture &&
+      (options->random > 0 || options->scene || (options->sweep && map_row(options->sweep) < 0)))
+    status = stic_error_set(&b->err, STIC_USAGE, NULL, 0,
+                            "bench extremes: --picture shows the sweeps k_p-mu and distance only");
+  if (status == STIC_OK && options->csv)
     status = stic_outfile_open(options->csv, &b->csv, &b->err);
   if (status == STIC_OK) {
     if (b->csv)

@@ -68,7 +68,7 @@ typedef struct stic_heat_map {
   int count, room;
 } stic_heat_map;
 
-/* Draws the maps, `columns` a row, by gnuplot. STIC_USAGE without gnuplot, STIC_CANNOT_WRITE. */
+/* Draws the maps that have points, `columns` a row, by gnuplot. STIC_USAGE without gnuplot, STIC_CANNOT_WRITE. */
 stic_status stic_heat_picture(const char *path, const stic_heat_map *maps, int count, int columns,
                               stic_error *err);
 

@@ -57,7 +57,11 @@ static void print_map(FILE *script, const stic_heat_map *map, int index)
 
 static void print_script(FILE *script, const char *png, const stic_heat_map *maps, int count, int columns)
 {
-  const int rows = (count + columns - 1) / columns;
+  int filled = 0;
+
+  for (int i = 0; i < count; i++)
+    filled += maps[i].count > 0;
+  const int rows = (filled + columns - 1) / columns;
 
   for (int i = 0; i < count; i++)
     print_data(script, &maps[i], i);
@@ -80,8 +84,6 @@ static void print_script(FILE *script, const char *png, const stic_heat_map *map
   for (int i = 0; i < count; i++)
     if (maps[i].count > 0)
       print_map(script, &maps[i], i);
-    else
-      fprintf(script, "set multiplot next\n");
   fprintf(script, "unset multiplot\nunset output\n");
 }
 

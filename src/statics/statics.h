@@ -16,7 +16,7 @@ enum {
   PAIRS_MAX = 2 * STIC_CONTACTS_MAX, /* opened pairs that have not left yet */
   STAGES_MAX = 64,                   /* of one RELAX */
   SAMPLE_EVENTS_MAX = 10000,         /* RELAX calls on one hand path at level event */
-  SAMPLE_WORK_MAX = 1000000,         /* ... and their work, see work_done() */
+  SAMPLE_WORK_MAX = 700000,          /* ... and their work, see work_done() */
   CONES_MAX = 2 * CONTACTS_MAX,
   SLIDING_GAPS_MAX = 1024
 };
@@ -142,12 +142,12 @@ typedef struct core {
   bool turn_done;  /* the last slide reached the zero of its moment: no turn right after it */
   bool happened;   /* touch, opening, slip: an event */
   real longest_slide;
-  real slid_on;      /* slid without events since the last sample */
+  real slid_on;                /* slid without events since the last sample */
   int flow_steps, flow_solves; /* spent on the viscous flow: bounded per sample */
   int stages;                  /* of all RELAX calls of the sample */
-  bool slid_to_zero; /* the last action was a slide that reached its balance */
-  real slide_sense;  /* ... in this sense (see sliding_sense) */
-  real noise;        /* rounding of a gap at these coordinates */
+  bool slid_to_zero;           /* the last action was a slide that reached its balance */
+  real slide_sense;            /* ... in this sense (see sliding_sense) */
+  real noise;                  /* rounding of a gap at these coordinates */
 
   stic_core_report *report;
   stic_event *events;

@@ -96,9 +96,11 @@ static void table_and_picture(void **state)
   assert_non_null(bytes);
   assert_memory_equal(bytes, "\x89PNG", 4);
   free(bytes);
-  expect(stic_test_program("bench", "extremes", "--quick", "--sweep", "friction", "--case", "0", "--picture",
+  expect(stic_test_program("bench", "extremes", "--quick", "--sweep", "distance", "--case", "0", "--picture",
                            "/nonexistent/e.png", NULL),
          5, "/nonexistent/e.png");
+  expect(stic_test_program("bench", "extremes", "--sweep", "friction", "--picture", png, NULL), 2,
+         "--picture is of the sweeps k_p-mu and distance");
 }
 
 static void refusals(void **state)
