@@ -354,7 +354,7 @@ static stic_status record_all(bench *b, const char *path, int64_t count, stic_er
   stic_live_report report;
   arrivals a;
   int64_t missing = 0;
-  stic_status status = stic_trace_create(path, "bench devices", &recording, err);
+  stic_status status = stic_trace_create(path, NULL, &recording, err);
 
   if (status != STIC_OK)
     return status;

@@ -570,9 +570,6 @@ static stic_status run_sweeps(bench *b)
     found |= !wanted || strcmp(wanted, stic_sweeps[i].name) == 0;
   if (!found)
     return no_sweep(wanted, &b->err);
-  if (wanted && b->options->picture && map_row(wanted) < 0)
-    return stic_error_set(&b->err, STIC_USAGE, NULL, 0,
-                          "bench extremes: --picture is of the sweeps k_p-mu and distance");
   print_head();
   for (int i = 0; i < stic_sweep_count && stic_cli_signal() == 0; i++) {
     if (!wanted || strcmp(wanted, stic_sweeps[i].name) == 0)

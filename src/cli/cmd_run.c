@@ -312,7 +312,7 @@ static stic_status open_view(run *r, const run_options *o, stic_error *err)
 
 static stic_status open_all(run *r, const run_options *o, const char *scene, stic_error *err)
 {
-  char described[300], comment[480];
+  char described[300];
   stic_status status = stic_session_load(&r->session, &o->session, scene, err);
 
   if (status == STIC_OK) /* after "auto" is settled: no sample has to wait for that */
@@ -326,9 +326,9 @@ static stic_status open_all(run *r, const run_options *o, const char *scene, sti
   if (status == STIC_OK && o->view)
     status = open_view(r, o, err);
   if (status == STIC_OK && o->record) {
-    snprintf(comment, sizeof comment, "accuracy %s, precision %s, device %s", r->session.accuracy_text,
-             stic_precision_name(r->session.settings.precision), described);
-    status = stic_trace_create(o->record, comment, &r->recording, err);
+    const stic_provenance provenance = stic_session_provenance(&r->session, "device", described);
+
+    status = stic_trace_create(o->record, &provenance, &r->recording, err);
   }
   return status;
 }

@@ -110,6 +110,12 @@ stic_status stic_session_load(stic_session *s, const stic_session_options *o, co
   return status;
 }
 
+stic_provenance stic_session_provenance(const stic_session *s, const char *input_kind, const char *input)
+{
+  return (stic_provenance){s->scene_path, input_kind,       input, s->accuracy_text, &s->settings,
+                           s->overrides,  s->override_count};
+}
+
 stic_status stic_session_begin(stic_session *s, const char *input_kind, const char *input, stic_error *err)
 {
   stic_status status;
@@ -123,8 +129,7 @@ stic_status stic_session_begin(stic_session *s, const char *input_kind, const ch
     return status;
   }
   if (s->log) {
-    const stic_log_provenance provenance = {
-      s->scene_path, input_kind, input, s->accuracy_text, &s->settings, s->overrides, s->override_count};
+    const stic_provenance provenance = stic_session_provenance(s, input_kind, input);
 
     stic_log_begin(s->log, &provenance);
   }

@@ -3,6 +3,7 @@
 #define STIC_SESSION_H
 
 #include "../io/outfile.h"
+#include "../io/provenance.h"
 #include "../io/timing.h"
 #include "../stiction.h"
 #include "cli.h"
@@ -64,6 +65,9 @@ typedef struct stic_session {
  * outlive the session. On failure nothing stays open. */
 stic_status stic_session_load(stic_session *session, const stic_session_options *options,
                               const char *scene_path, stic_error *err);
+/* Where its outputs come from, for the head of a log or recording; as long as the session and the strings last. */
+stic_provenance stic_session_provenance(const stic_session *session, const char *input_kind,
+                                        const char *input);
 /* Then makes the simulation and opens the outputs. `input_kind` and `input` are the log's provenance ("trace",
  * path). On failure nothing stays open. */
 stic_status stic_session_begin(stic_session *session, const char *input_kind, const char *input,

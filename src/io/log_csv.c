@@ -17,30 +17,15 @@
 
 /* ---- writing ----------------------------------------------------------------------------- */
 
-/* File names and overrides are foreign text: one line, whatever they hold. */
-static void provenance_line(stic_outfile *out, const char *key, const char *value)
+static void print_line(void *out, const char *text)
 {
-  char text[1024];
-
-  stic_outfile_print(out, "# %s: %s\n", key, stic_error_quote(value, strlen(value), text, sizeof text));
+  stic_outfile_print(out, "%s", text);
 }
 
-void stic_log_begin(stic_outfile *out, const stic_log_provenance *p)
+void stic_log_begin(stic_outfile *out, const stic_provenance *p)
 {
-  char accuracy[32], set[512];
-
-  assert(p->scene && p->input_kind && p->input && p->settings);
-  stic_settings_accuracy_text(p->settings, accuracy, sizeof accuracy);
   stic_outfile_print(out, STIC_LOG_FORMAT "\n");
-  provenance_line(out, "scene", p->scene);
-  provenance_line(out, p->input_kind, p->input);
-  provenance_line(out, "version", stic_version());
-  provenance_line(out, "accuracy", p->accuracy ? p->accuracy : accuracy);
-  provenance_line(out, "precision", stic_precision_name(p->settings->precision));
-  for (int i = 0; i < p->override_count; i++) {
-    snprintf(set, sizeof set, "%s=%s", p->overrides[i].key, p->overrides[i].value);
-    provenance_line(out, "set", set);
-  }
+  stic_provenance_lines(p, print_line, out);
   stic_outfile_print(out, STIC_LOG_HEADER "\n");
 }
 

@@ -4,6 +4,7 @@
 
 #include "../stiction.h"
 #include "outfile.h"
+#include "provenance.h"
 
 #define STIC_LOG_FORMAT "# stiction-log 1"
 #define STIC_LOG_CONTACTS 4 /* listed in a row */
@@ -15,19 +16,8 @@
   "c3_vertex,c3_surface,c3_x,c3_y,c3_normal,c3_friction,"                                                    \
   "c4_vertex,c4_surface,c4_x,c4_y,c4_normal,c4_friction"
 
-/* Where a log comes from: lines of "# key: value" under its first one. No clock values. */
-typedef struct stic_log_provenance {
-  const char *scene;      /* path of the scene file */
-  const char *input_kind; /* "trace" or "device" */
-  const char *input;      /* its path or description */
-  const char *accuracy;   /* NULL: as in settings */
-  const stic_settings *settings;
-  const stic_override *overrides; /* may be NULL if override_count is 0 */
-  int override_count;
-} stic_log_provenance;
-
-/* Writes the format line, provenance and column header. */
-void stic_log_begin(stic_outfile *out, const stic_log_provenance *provenance);
+/* Writes the format line, provenance (no clock values) and column header. */
+void stic_log_begin(stic_outfile *out, const stic_provenance *provenance);
 
 /* Appends a row; failures show in the outfile. No allocation. */
 void stic_log_row(stic_outfile *out, const stic_result *result);

@@ -334,14 +334,38 @@ static int open_alone(const char *path)
   return -1;
 }
 
-stic_status stic_trace_create(const char *path, const char *comment, stic_trace_writer **writer,
+/* The head, line by line. */
+typedef struct head_writer {
+  stic_trace_writer *writer;
+  stic_status status;
+  stic_error *err;
+} head_writer;
+
+static void write_head_line(void *context, const char *text)
+{
+  head_writer *h = context;
+
+  if (h->status == STIC_OK)
+    h->status = write_whole(h->writer, text, strlen(text), h->err);
+}
+
+static stic_status write_head(stic_trace_writer *w, const stic_provenance *provenance, stic_error *err)
+{
+  head_writer h = {w, STIC_OK, err};
+
+  write_head_line(&h, STIC_TRACE_FORMAT "\n");
+  if (provenance)
+    stic_provenance_lines(provenance, write_head_line, &h);
+  write_head_line(&h, STIC_TRACE_HEADER "\n");
+  return h.status;
+}
+
+stic_status stic_trace_create(const char *path, const stic_provenance *provenance, stic_trace_writer **writer,
                               stic_error *err)
 {
   const bool standard_output = strcmp(path, "-") == 0;
   stic_trace_writer *w = malloc(sizeof *w);
-  char head[512], quoted[256];
   stic_status status;
-  int n;
 
   *writer = NULL;
   if (!w)
@@ -357,10 +381,7 @@ stic_status stic_trace_create(const char *path, const char *comment, stic_trace_
     free(w);
     return status;
   }
-  n = snprintf(head, sizeof head, STIC_TRACE_FORMAT "\n%s%s%s" STIC_TRACE_HEADER "\n", comment ? "# " : "",
-               comment ? stic_error_quote(comment, strlen(comment), quoted, sizeof quoted) : "",
-               comment ? "\n" : "");
-  status = write_whole(w, head, (size_t)n, err);
+  status = write_head(w, provenance, err);
   if (status != STIC_OK) {
     stic_trace_finish(w, NULL);
     return status;

@@ -3,6 +3,7 @@
 #define STIC_TRACE_CSV_H
 
 #include "../stiction.h"
+#include "provenance.h"
 
 #define STIC_TRACE_FORMAT "# stiction-trace 1"
 #define STIC_TRACE_HEADER "t,x,y,z,qx,qy,qz,qw,buttons"
@@ -54,9 +55,9 @@ int64_t stic_trace_skipped(const stic_trace_reader *reader);
 typedef struct stic_trace_writer stic_trace_writer;
 
 /* Creates a recording. It is written line by line with one write() each, so that all but the last
- * line survives a crash; an existing file is replaced, unless another program is recording to it. `comment` (may be NULL) is one line of
- * provenance. "-" is standard output. Errors: STIC_CANNOT_WRITE, STIC_NO_MEMORY. Real-time: no. */
-stic_status stic_trace_create(const char *path, const char *comment, stic_trace_writer **writer,
+ * line survives a crash; an existing file is replaced, unless another program is recording to it. `provenance` may be
+ * NULL: none. "-" is standard output. Errors: STIC_CANNOT_WRITE, STIC_NO_MEMORY. Real-time: no. */
+stic_status stic_trace_create(const char *path, const stic_provenance *provenance, stic_trace_writer **writer,
                               stic_error *err);
 /* Appends one sample; reading it back gives the same one, bit for bit. */
 stic_status stic_trace_write(stic_trace_writer *writer, const stic_sample *sample, stic_error *err);

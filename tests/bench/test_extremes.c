@@ -100,7 +100,7 @@ static void table_and_picture(void **state)
                            "/nonexistent/e.png", NULL),
          5, "/nonexistent/e.png");
   expect(stic_test_program("bench", "extremes", "--sweep", "friction", "--picture", png, NULL), 2,
-         "--picture is of the sweeps k_p-mu and distance");
+         "--picture shows the sweeps k_p-mu and distance only");
 }
 
 static void refusals(void **state)

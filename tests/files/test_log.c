@@ -40,7 +40,7 @@ static const char *write_log(int rows)
   const char *path = stic_test_path("log.csv");
   const stic_override set[] = {{"friction.static", "0.6\n"}};
   stic_settings settings;
-  const stic_log_provenance provenance = {"a\nb.yaml", "trace", "t.csv", NULL, &settings, set, 1};
+  const stic_provenance provenance = {"a\nb.yaml", "trace", "t.csv", NULL, &settings, set, 1};
   stic_outfile *out;
 
   stic_settings_init(&settings);

@@ -251,10 +251,14 @@ static void test_recording(void **state)
   stic_trace_writer *writer;
   stic_trace_reader *reader;
   stic_sample written[100], sample;
+  stic_settings settings;
+  const stic_override set[] = {{"friction.static", "0.6"}};
+  const stic_provenance provenance = {"a\nscene.yaml", "device", "a tracker", NULL, &settings, set, 1};
   stic_error err;
 
   (void)state;
-  assert_int_equal(stic_trace_create(path, "a\ncomment", &writer, &err), STIC_OK);
+  stic_settings_init(&settings);
+  assert_int_equal(stic_trace_create(path, &provenance, &writer, &err), STIC_OK);
   memset(written, 0, sizeof written);
   for (int i = 0; i < 100; i++) {
     written[i].t_ns = -5 + i * INT64_C(1234567891);
