@@ -222,14 +222,15 @@ static bool translate(stic_window *w, const SDL_Event *from, stic_window_event *
 static bool window_next(stic_window *w, int wait_ms, stic_window_event *event)
 {
   SDL_Event from;
+  const bool any = !w->lost && SDL_WaitEventTimeout(&from, wait_ms); /* it may be lost meanwhile */
 
-  if (!w->lost && !SDL_WaitEventTimeout(&from, wait_ms) && !w->lost)
-    return false;
   if (w->lost) {
     memset(event, 0, sizeof *event);
     event->kind = STIC_WINDOW_LOST;
     return true;
   }
+  if (!any)
+    return false;
   do {
     if (translate(w, &from, event))
       return true;
