@@ -228,5 +228,5 @@ bool stic_pose_recognize(const char *line, size_t length, stic_pose_format *form
   stic_field fields[COLUMNS];
 
   *format = memchr(line, ',', length) ? STIC_POSE_EUROC : STIC_POSE_TUM;
-  return split(*format, line, length, fields, COLUMNS) == COLUMNS;
+  return split(*format, line, length, fields, COLUMNS) >= COLUMNS; /* EuRoC has more, of no concern */
 }
