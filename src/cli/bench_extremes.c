@@ -417,8 +417,8 @@ static void run_case(bench *b, const stic_extreme *start, const label *name, int
 
 /* ---- heat maps ------------------------------------------------------------------------------- */
 
-/* Digits that the balance is met to: of the worst row of all levels. */
-static void add_heat(stic_heat_map *map, const stic_extreme *e, const tally *t)
+/* Digits that the balance is met to: of the worst row of all levels. Frames count from `before` this case. */
+static void add_heat(stic_heat_map *map, const stic_extreme *e, const tally *t, const tally *before)
 {
   stic_heat_point *more;
 
@@ -429,10 +429,10 @@ static void add_heat(stic_heat_map *map, const stic_extreme *e, const tally *t)
       return;
     map->points = more;
   }
+  const bool answered = t->frames - before->frames > t->no_answer - before->no_answer;
   const double digits = t->residual > 0 ? -log10(t->residual) : 17;
 
-  map->points[map->count++] =
-    (stic_heat_point){e->a, e->b, t->frames > t->no_answer ? fmin(17, fmax(0, digits)) : NAN};
+  map->points[map->count++] = (stic_heat_point){e->a, e->b, answered ? fmin(17, fmax(0, digits)) : NAN};
 }
 
 /* Which row of maps shows a sweep, -1: none. */
@@ -541,7 +541,7 @@ static bool run_sweep(bench *b, const stic_sweep *sweep)
       stic_heat_map *map = map_of(b, sweep->name, p);
 
       if (map)
-        add_heat(map, &e, &b->tallies[p]);
+        add_heat(map, &e, &b->tallies[p], &before[p]);
       b->tallies[p].residual = fmax(b->tallies[p].residual, before[p].residual);
     }
   }

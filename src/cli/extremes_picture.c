@@ -23,7 +23,7 @@ static void print_data(FILE *script, const stic_heat_map *map, int index)
   fprintf(script, "$d%d << EOD\n", index);
   for (int i = 0; i < map->count; i++)
     fprintf(script, "%.6g %.6g %.6g\n", exponent_of(map->points[i].a), exponent_of(map->points[i].b),
-            map->points[i].digits);
+            isnan(map->points[i].digits) ? -1 : map->points[i].digits); /* gnuplot drops lines with a NaN */
   fprintf(script, "EOD\n");
 }
 
@@ -49,8 +49,8 @@ static void print_map(FILE *script, const stic_heat_map *map, int index)
   fprintf(script, "set title '%s' font ',14' tc rgb '#222222' noenhanced\n", map->title);
   fprintf(script, "set xlabel '%s' noenhanced\nset ylabel '%s' noenhanced\n", map->label_a, map->label_b);
   fprintf(script,
-          "plot $d%d using 1:2:($1-%g):($1+%g):($2-%g):($2+%g):($3==$3?$3:NaN) with boxxyerror fs solid 1 "
-          "noborder lc palette notitle, '' using ($3==$3?NaN:$1):2 with points pt 2 ps 0.5 lc rgb '#b0b0b0' "
+          "plot $d%d using 1:2:($1-%g):($1+%g):($2-%g):($2+%g):($3<0?NaN:$3) with boxxyerror fs solid 1 "
+          "noborder lc palette notitle, '' using ($3<0?$1:NaN):2 with points pt 2 ps 1 lc rgb '#888888' "
           "notitle\n",
           index, width, width, height, height);
 }
