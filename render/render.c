@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "clock.h"
 #include "error.h"
 #include "hud.h"
 #include "submit.h"
@@ -102,14 +102,6 @@ bool stic_plot_from_name(const char *name, stic_plot *plot)
   if (i >= 0)
     *plot = (stic_plot)i;
   return i >= 0;
-}
-
-static int64_t thread_time_ns(void)
-{
-  struct timespec t;
-
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
 }
 
 static int samples_of(stic_quality quality)
@@ -339,7 +331,7 @@ static void draw_overlays(stic_render *r, stic_rect changed)
 
 stic_status stic_render_draw(stic_render *r, stic_image *image, stic_error *err)
 {
-  int64_t start = thread_time_ns(), built, drawn, read;
+  int64_t start = stic_clock_thread_ns(), built, drawn, read;
   stic_rect now, changed;
   stic_status status;
 
@@ -356,26 +348,26 @@ stic_status stic_render_draw(stic_render *r, stic_image *image, stic_error *err)
     changed = whole_view(r);
   if (r->hud.note[0] || r->noted)
     changed = stic_rect_union(changed, note_area(r));
-  built = thread_time_ns();
+  built = stic_clock_thread_ns();
   if (!r->stage_valid) {
     stic_submit_stage(&r->submit, &r->stage, r->matrix, r->view.theme->background);
     draw_fixed(r);
   }
   if (!stic_rect_empty(changed))
     stic_submit_frame(&r->submit, &r->actors, r->matrix, changed);
-  drawn = thread_time_ns();
+  drawn = stic_clock_thread_ns();
   if (!stic_rect_empty(changed))
     stic_submit_read(&r->submit, changed, r->canvas.pixels, r->canvas.width, r->hud.view_top);
   status = stic_submit_check(&r->submit, err);
   if (status)
     return status;
-  read = thread_time_ns();
+  read = stic_clock_thread_ns();
   draw_overlays(r, changed);
   r->stage_valid = true;
   r->drawn = now;
   r->force_full = r->view.force_full;
   r->noted = r->hud.note[0] != '\0';
-  r->times = (stic_render_times){built - start, drawn - built, read - drawn, thread_time_ns() - read};
+  r->times = (stic_render_times){built - start, drawn - built, read - drawn, stic_clock_thread_ns() - read};
   *image = (stic_image){r->canvas.width, r->canvas.height, r->canvas.pixels};
   return STIC_OK;
 }

@@ -31,19 +31,6 @@ static int list_settings(const stic_settings *like, stic_auto_try *list)
   return count;
 }
 
-static int by_size(const void *a, const void *b)
-{
-  const int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
-
-  return (x > y) - (x < y);
-}
-
-static int64_t p999(int64_t *cost, int count)
-{
-  qsort(cost, (size_t)count, sizeof *cost, by_size);
-  return count > 0 ? cost[(count - 1) - count / 1000] : INT64_MAX;
-}
-
 /* What reading the thread's clock costs. */
 static int64_t clock_cost_ns(void)
 {
@@ -54,8 +41,7 @@ static int64_t clock_cost_ns(void)
 
     cost[i] = stic_clock_thread_ns() - start_ns;
   }
-  qsort(cost, 101, sizeof *cost, by_size);
-  return cost[50];
+  return stic_cost_quantile(cost, 101, 0.5);
 }
 
 /* The fastest of several runs is what a sample costs; the rest is what the machine did meanwhile. */
@@ -88,7 +74,7 @@ static stic_status try_settings(const stic_motion *motion, stic_auto_try *attemp
     stic_sim_destroy(sim);
   }
   attempt->whole = count == motion->count;
-  attempt->p999_ns = p999(cost, count);
+  attempt->p999_ns = count > 0 ? stic_cost_quantile(cost, count, 0.999) : INT64_MAX;
   return STIC_OK;
 }
 

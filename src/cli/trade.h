@@ -53,6 +53,8 @@ stic_status stic_outcome_reserve(stic_outcome *outcome, int count, stic_error *e
 stic_status stic_outcome_run(stic_outcome *outcome, const stic_motion *motion, const stic_settings *settings,
                              int stride, stic_error *err);
 void stic_outcome_free(stic_outcome *outcome);
+/* Sorts `count` > 0 costs and gives the one that `part` (0..1] of all do not exceed. */
+int64_t stic_cost_quantile(int64_t *ns, int count, double part);
 /* A row's cost that `part` (0..1] of all rows do not exceed. */
 int64_t stic_outcome_cost(const stic_outcome *outcome, double part);
 

@@ -430,11 +430,16 @@ static int compare_ns(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
+int64_t stic_cost_quantile(int64_t *ns, int count, double part)
+{
+  qsort(ns, (size_t)count, sizeof *ns, compare_ns);
+  return ns[(int)fmin(count - 1, fmax(0, ceil(part * count) - 1))];
+}
+
 int64_t stic_outcome_cost(const stic_outcome *o, double part)
 {
   memcpy(o->sorted, o->least_ns, (size_t)o->count * sizeof *o->sorted);
-  qsort(o->sorted, (size_t)o->count, sizeof *o->sorted, compare_ns);
-  return o->sorted[(int)fmin(o->count - 1, fmax(0, ceil(part * o->count) - 1))];
+  return stic_cost_quantile(o->sorted, o->count, part);
 }
 
 /* ---- differences ------------------------------------------------------------------------- */
