@@ -207,14 +207,16 @@ static real dot3(const real *a, const real *b)
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Least squares over the passive columns: weights that come nearest to the target. */
+/* Least squares over the passive columns: weights that come nearest to the target. Three columns span the space;
+ * their own equations then give it to rounding, however flat they lie (a thin rod's moments are small), while the
+ * normal equations square that flatness. */
 static bool fit_columns(const generators *g, const int *passive, int n, const real target[3], real *weights)
 {
-  real m[3][4]; /* at most as many columns as the space has dimensions */
+  real m[3][4];
   for (int i = 0; i < n; i++) {
     for (int k = 0; k < n; k++)
-      m[i][k] = dot3(g->column[passive[i]], g->column[passive[k]]);
-    m[i][n] = dot3(g->column[passive[i]], target);
+      m[i][k] = n == 3 ? g->column[passive[k]][i] : dot3(g->column[passive[i]], g->column[passive[k]]);
+    m[i][n] = n == 3 ? target[i] : dot3(g->column[passive[i]], target);
   }
   if (!solve_linear(n, 4, m[0], 64 * REAL_EPSILON))
     return false;

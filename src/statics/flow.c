@@ -107,7 +107,8 @@ static vec flow_velocity(const core *c, const flow_rates *r, int vertex)
 static bool modes_hold(const flow *f, const flow_rates *r)
 {
   const core *c = f->c;
-  real slack = balance_slack(c);
+  /* A motion counts however slow it is: of the slack only the load's rounding makes a speed. */
+  real slack = balance_slack(c), still = slack - TOLERANCE * c->body.size;
   for (int i = 0; i < f->count; i++) {
     const surface *s = &c->body.surfaces[f->contacts[i].surface];
     vec v = flow_velocity(c, r, f->contacts[i].vertex);
@@ -119,11 +120,11 @@ static bool modes_hold(const flow *f, const flow_rates *r)
       break;
     case FLOW_FORWARD:
     case FLOW_BACK:
-      if (normal < -slack || (f->modes[i] == FLOW_FORWARD ? speed : -speed) < -slack)
+      if (normal < -slack || (f->modes[i] == FLOW_FORWARD ? speed : -speed) < -still)
         return false;
       break;
     default:
-      if (v_dot(v, s->n) < -slack)
+      if (v_dot(v, s->n) < -still)
         return false;
     }
   }
