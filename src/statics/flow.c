@@ -103,12 +103,17 @@ static vec flow_velocity(const core *c, const flow_rates *r, int vertex)
   return v_mix(r->g, r->theta, v_perp(v_sub(world_vertex(c, vertex), holding_point(c))));
 }
 
+/* A motion counts however slow it is: of what a balance may be off, only the load's rounding makes a speed. */
+static real speed_rounding(const core *c)
+{
+  return balance_slack(c) - TOLERANCE * c->body.size;
+}
+
 /* Does every contact stay in its mode at these rates? */
 static bool modes_hold(const flow *f, const flow_rates *r)
 {
   const core *c = f->c;
-  /* A motion counts however slow it is: of the slack only the load's rounding makes a speed. */
-  real slack = balance_slack(c), still = slack - TOLERANCE * c->body.size;
+  real slack = balance_slack(c), still = speed_rounding(c);
   for (int i = 0; i < f->count; i++) {
     const surface *s = &c->body.surfaces[f->contacts[i].surface];
     vec v = flow_velocity(c, r, f->contacts[i].vertex);
@@ -283,7 +288,7 @@ static flow_pose flow_along(flow *f, flow_pose q, touch *t)
     q = next;
     flow_rates r;
     set_flow_pose(c, q);
-    if (!flow_solve(f, &r) || flow_speed(c, &r) <= tolerance)
+    if (!flow_solve(f, &r) || flow_speed(c, &r) <= r_max(tolerance, speed_rounding(c)))
       return q;
     if (error < tolerance / 64)
       h = r_min(R(0.5), h * R(1.5));
