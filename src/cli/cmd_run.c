@@ -228,6 +228,8 @@ static void tell_report(const run *r, const stic_live_report *report)
   tell_times(r->session.timing);
   stic_cli_say("%s; %zu samples and %zu rows at most waited", report->scheduling, report->samples_most,
                report->rows_most);
+  if (report->device_stalls)
+    stic_cli_say("the device does not come back from a read: left as it is");
   if (report->lost_samples > 0)
     stic_cli_say("%lld samples lost: the solver was too slow for them", (long long)report->lost_samples);
   if (stic_run_pictures_wanted(r->pictures))
@@ -335,22 +337,28 @@ static stic_status open_all(run *r, const run_options *o, const char *scene, sti
 
 static int run_device(run_options *options, const char *scene)
 {
-  run r;
-  stic_live_report report;
+  run *r = calloc(1, sizeof *r);
+  stic_live_report report = {.device_stalls = false};
   stic_error err;
   int code;
 
-  memset(&r, 0, sizeof r);
-  r.pictures = &options->pictures;
-  if (open_all(&r, options, scene, &err) != STIC_OK || loop(&r, &report, &err) != STIC_OK)
+  if (!r) {
+    stic_cli_say("out of memory");
+    return STIC_NO_MEMORY;
+  }
+  r->pictures = &options->pictures;
+  if (open_all(r, options, scene, &err) != STIC_OK || loop(r, &report, &err) != STIC_OK)
     code = stic_cli_fail(&err);
   else
-    code = finish(&r, &report, &err);
-  stic_trace_finish(r.recording, NULL);
-  stic_viewer_close(r.viewer);
-  stic_session_close(&r.session);
-  stic_supervisor_close(r.device);
-  stic_ring_destroy(r.news);
+    code = finish(r, &report, &err);
+  stic_trace_finish(r->recording, NULL);
+  stic_viewer_close(r->viewer);
+  stic_session_close(&r->session);
+  if (report.device_stalls) /* the reader is still in the device, which tells its news to `r` */
+    return code;
+  stic_supervisor_close(r->device);
+  stic_ring_destroy(r->news);
+  free(r);
   return code;
 }
 

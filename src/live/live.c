@@ -154,9 +154,19 @@ static stic_status start_threads(stic_live *live, const stic_live_settings *s, s
   return problem == 0 ? status : no_thread(problem, err);
 }
 
-static void join_all(stic_live *live)
+/* Of threads[0], the reader; it may be held up in a read of its device. */
+static bool reader_ends(const stic_live *live)
 {
-  for (int i = 0; i < live->thread_count; i++)
+  const int64_t until_ns = stic_clock_ns() + STIC_LIVE_STALL_NS;
+
+  while (!live_flag(&live->reader_done) && stic_clock_ns() < until_ns)
+    stic_clock_sleep_until(stic_clock_ns() + 1000000);
+  return live_flag(&live->reader_done);
+}
+
+static void join(stic_live *live, int first)
+{
+  for (int i = first; i < live->thread_count; i++)
     pthread_join(live->threads[i], NULL);
   live->thread_count = 0;
 }
@@ -195,7 +205,7 @@ static void give_up(stic_live *live)
   live_raise(&live->solver_done);
   stic_live_stop(live);
   sem_post(&live->go);
-  join_all(live);
+  join(live, 0);
   destroy(live);
 }
 
@@ -257,11 +267,12 @@ static void tell_overflow(const stic_live *live, stic_error *err)
     stic_ring_most(live->rows));
 }
 
-static void make_report(const stic_live *live, stic_live_report *report)
+static void make_report(const stic_live *live, bool stalls, stic_live_report *report)
 {
   memset(report, 0, sizeof *report);
-  report->device_result = live->reader.result;
-  report->end = live->reader.result < 0 ? STIC_LIVE_DEVICE_ENDED : STIC_LIVE_STOPPED;
+  report->device_stalls = stalls;
+  report->device_result = stalls ? 0 : live->reader.result;
+  report->end = report->device_result < 0 ? STIC_LIVE_DEVICE_ENDED : STIC_LIVE_STOPPED;
   report->output_error = live->writer.error;
   if (live->solver.overflow && report->output_error.status == STIC_OK)
     tell_overflow(live, &report->output_error);
@@ -271,7 +282,7 @@ static void make_report(const stic_live *live, stic_live_report *report)
   report->rows = live->solver.rows;
   report->seconds = (double)(live->solver.end_ns - live->solver.first_ns) / 1e9;
   report->repeated = live->solver.repeated;
-  report->lost_samples = live->reader.lost + (int64_t)stic_ring_count(live->samples);
+  report->lost_samples = (stalls ? 0 : live->reader.lost) + (int64_t)stic_ring_count(live->samples);
   report->unseen_results = live->solver.unseen;
   report->samples_most = stic_ring_most(live->samples);
   report->rows_most = stic_ring_most(live->rows);
@@ -281,16 +292,21 @@ static void make_report(const stic_live *live, stic_live_report *report)
 
 void stic_live_finish(stic_live *live, stic_timing *timing, stic_live_report *report)
 {
+  bool stalls;
+
   if (!live)
     return;
   if (stic_live_runs(live))
     stic_live_stop(live);
-  join_all(live);
-  make_report(live, report);
+  stalls = !reader_ends(live);
+  join(live, stalls ? 1 : 0); /* what is left behind keeps `live` */
+  make_report(live, stalls, report);
   if (timing) {
-    stic_timing_merge(timing, &live->reader.timing);
+    if (!stalls)
+      stic_timing_merge(timing, &live->reader.timing);
     stic_timing_merge(timing, &live->solver.timing);
     stic_timing_merge(timing, &live->writer.timing);
   }
-  destroy(live);
+  if (!stalls)
+    destroy(live);
 }

@@ -83,6 +83,7 @@ typedef enum stic_live_end {
 typedef struct stic_live_report {
   stic_live_end end;
   int device_result;        /* STIC_DRIVER_ */
+  bool device_stalls;       /* it has not come back from a read: the loop has ended without its reader */
   stic_error output_error;  /* status STIC_OK: none */
   stic_error picture_error; /* the same */
   int64_t rows;             /* solved; all of them written unless output_error */
@@ -116,7 +117,9 @@ stic_latest *stic_live_view(stic_live *live);
 void stic_live_stop(stic_live *live);
 
 /* Stops, waits for all threads and until all is written, tells how it went, adds the times to `timing` (may be
- * NULL) and frees. NULL `live` allowed. Real-time: no. */
+ * NULL) and frees. A device that blocks (a pipe whose writer stalls) is waited for 2 s; then the reader's thread, the
+ * device and what its callbacks use must be left as they are until the process ends (device_stalls). NULL `live`
+ * allowed. Real-time: no. */
 void stic_live_finish(stic_live *live, stic_timing *timing, stic_live_report *report);
 
 #endif

@@ -14,8 +14,10 @@
 #define STIC_LIVE_ROWS 65536
 #define STIC_LIVE_EVENTS (8 * STIC_EVENTS_MAX)
 #define STIC_LIVE_PICTURES 1024
-#define STIC_LIVE_AHEAD 4096            /* samples that a source without haste may be ahead of the solver */
-#define STIC_LIVE_DRAIN_NS 100000000    /* after a stop the solver goes on for so long with what was read */
+#define STIC_LIVE_AHEAD 4096         /* samples that a source without haste may be ahead of the solver */
+#define STIC_LIVE_DRAIN_NS 100000000 /* after a stop the solver goes on for so long with what was read */
+#define STIC_LIVE_STALL_NS                                                                                   \
+  2000000000 /* a device that does not come back within this after a stop is left behind */
 #define STIC_LIVE_LOOK_NS 10000000      /* how often a thread looks into a queue that nobody wakes it for */
 #define STIC_LIVE_PICTURE_LAG 250000000 /* ns that a picture may be late and still be drawn */
 

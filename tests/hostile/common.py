@@ -25,6 +25,8 @@ friction: {static: 0.5, dynamic: 0.3}
 surfaces:
   - {name: floor, point: [0, 0], normal_deg: 90}
 """
+PACKET = "80 00 07 68 7f 6c 3c 00 00 01 03 10 6d 30 00 04"  # of the ultrasonic tracker
+SERIAL = "# stiction-serial 1\n" + "".join(f"{20000000 * i} {PACKET}\n" for i in range(30))
 TRACE_HEAD = "# stiction-trace 1\nt,x,y,z,qx,qy,qz,qw,buttons\n"
 
 

@@ -6,14 +6,12 @@ import socket
 import subprocess
 import time
 
-from common import (SANITIZED, SCENE, TRACE_HEAD, check, finish, folder, leftovers, path, read, rows, run, start, wait,
-                    write)
+from common import (PACKET, SANITIZED, SCENE, SERIAL, TRACE_HEAD, check, finish, folder, leftovers, path, read, rows,
+                    run, start, wait, write)
 
 scene = write("scene.yaml", SCENE)
 trace = write("hand.csv", TRACE_HEAD + rows(300))
 recording = write("poses.txt", "".join(f"{i}.5 0 0.1 0.2 0 0 0 1\n" for i in range(300)))
-PACKET = "80 00 07 68 7f 6c 3c 00 00 01 03 10 6d 30 00 04"  # of the ultrasonic tracker
-SERIAL = "# stiction-serial 1\n" + "".join(f"{20000000 * i} {PACKET}\n" for i in range(30))
 serial = write("serial.txt", SERIAL)
 log = path("good.log")
 assert run("replay", scene, trace, "--log", log).code == 0

@@ -6,7 +6,7 @@ import signal
 import subprocess
 import time
 
-from common import SCENE, TRACE_HEAD, await_handlers, check, finish, folder, leftovers, path, read, rows, run, start, wait, write
+from common import SCENE, SERIAL, TRACE_HEAD, await_handlers, check, finish, folder, leftovers, path, read, rows, run, start, wait, write
 
 TURNS = int(os.environ.get("TURNS", "3"))  # per command; more on request
 scene = write("scene.yaml", SCENE)
@@ -138,6 +138,31 @@ def waiting_readers():
         check("waiting readers: nothing left", not leftovers(), leftovers())
 
 
+def stalled_writers():
+    """A device that gave samples and then blocks in the middle of a read: what it gave is written."""
+    out = path("stalled")
+    for command in (["run", scene, "--device", "recording:file=PIPE", "--log", out + "/l.log"],
+                    ["monitor", "--plain", "--device", "recording:file=PIPE"]):
+        shutil.rmtree(out, ignore_errors=True)
+        os.mkdir(out)
+        pipe = path("stalled.pipe")
+        os.mkfifo(pipe)
+        process = start([a.replace("PIPE", pipe) for a in command], before=None)
+        fd = os.open(pipe, os.O_WRONLY)
+        os.write(fd, SERIAL.encode())
+        await_handlers(process)
+        time.sleep(1)
+        process.terminate()
+        done = wait(process)
+        os.close(fd)
+        os.remove(pipe)
+        check(f"{command[0]}, stalled: ended", done.code == 0, done)
+        if command[0] == "run":
+            lines = [line for line in read(out + "/l.log").split(b"\n") if line[:1].isdigit()]
+            check("run, stalled: what came is written", len(lines) > 10, len(lines))
+    check("stalled: nothing left", not leftovers(), leftovers())
+
+
 def a_gap_of_years():
     """Pictures of a trace with a gap that would take for ever to draw."""
     gap = write("gap.csv", TRACE_HEAD + rows(2) + rows(2, rate=1, start=3000000000))
@@ -152,5 +177,6 @@ def a_gap_of_years():
 for command in COMMANDS:
     sweep(command)
 waiting_readers()
+stalled_writers()
 a_gap_of_years()
 finish()
