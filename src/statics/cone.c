@@ -207,10 +207,9 @@ static real dot3(const real *a, const real *b)
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Least squares over the passive columns: weights that come nearest to the target. Three columns span the space;
- * their own equations then give it to rounding, however flat they lie (a thin rod's moments are small), while the
- * normal equations square that flatness. */
-static bool fit_columns(const generators *g, const int *passive, int n, const real target[3], real *weights)
+/* Solves for the passive columns' weights once. Three columns span the space; their own equations then give the target
+ * to rounding, however flat they lie (a thin rod's moments are small), while normal equations square that flatness. */
+static bool solve_columns(const generators *g, const int *passive, int n, const real target[3], real *weights)
 {
   real m[3][4];
   for (int i = 0; i < n; i++) {
@@ -222,6 +221,33 @@ static bool fit_columns(const generators *g, const int *passive, int n, const re
     return false;
   for (int i = 0; i < n; i++)
     weights[i] = m[i][n];
+  return true;
+}
+
+/* What the passive columns leave of the target. */
+static void remainder_of(const generators *g, const int *passive, int n, const real target[3],
+                         const real *weights, real left[3])
+{
+  for (int k = 0; k < 3; k++) {
+    left[k] = target[k];
+    for (int i = 0; i < n; i++)
+      left[k] -= weights[i] * g->column[passive[i]][k];
+  }
+}
+
+/* Least squares over the passive columns: weights that come nearest to the target, with some steps of refinement. */
+static bool fit_columns(const generators *g, const int *passive, int n, const real target[3], real *weights)
+{
+  enum { REFINEMENTS = 2 };
+  real left[3], more[3];
+  if (!solve_columns(g, passive, n, target, weights))
+    return false;
+  for (int pass = 0; pass < REFINEMENTS; pass++) {
+    remainder_of(g, passive, n, target, weights, left);
+    solve_columns(g, passive, n, left, more);
+    for (int i = 0; i < n; i++)
+      weights[i] += more[i];
+  }
   return true;
 }
 
@@ -238,7 +264,10 @@ static real nearest_in_cone(const generators *g, const real target[3], real *wei
     away[k] = target[k];
   for (int step = 0; step < BALANCE_STEPS_MAX; step++) {
     int best = -1;
-    real best_gain = 8 * REAL_EPSILON * scale;
+    real size = scale;
+    for (int k = 0; k < n; k++)
+      size += weights[passive[k]];
+    real best_gain = 8 * REAL_EPSILON * size; /* less is the weights' rounding */
     for (int i = 0; i < g->count; i++) {
       bool used = false;
       for (int k = 0; k < n; k++)
@@ -272,11 +301,9 @@ static real nearest_in_cone(const generators *g, const real target[3], real *wei
       weights[passive[leaving]] = 0;
       passive[leaving] = passive[--n];
     }
-    for (int k = 0; k < 3; k++) {
-      away[k] = target[k];
-      for (int i = 0; i < n; i++)
-        away[k] -= weights[passive[i]] * g->column[passive[i]][k];
-    }
+    for (int k = 0; k < n; k++)
+      trial[k] = weights[passive[k]];
+    remainder_of(g, passive, n, target, trial, away);
     if (dot3(away, away) <= REAL_EPSILON * REAL_EPSILON * scale * scale)
       break;
   }
@@ -547,9 +574,9 @@ static void least_norm_of_many(core *c, vec *forces)
     start_inside(q, target, now_n, now_t);
   }
   for (int step = 0; step < NORM_STEPS_MAX && !done; step++) {
-    if (!invert_gram(q))
+    /* Where the free forces are all but dependent they may miss the target: what balances stays. */
+    if (!invert_gram(q) || bounded_least_norm(q, target, n, t, y) > balance_slack(c) / 4)
       break;
-    bounded_least_norm(q, target, n, t, y);
     real part = 1;
     int hit = -1, side = 0;
     for (int i = 0; i < q->count; i++)

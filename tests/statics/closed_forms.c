@@ -930,7 +930,33 @@ static void slot(void **state)
   }
 }
 
-/* A vertex in a corner, and a box flush in it. Without friction every force is fixed by the hand. */
+/* Rods of 1:1000 along a wall of a corner: they bear any such load, in forces whose moments are a thousandth of the
+ * forces. The second also has a friction of 664. */
+static void thin_rods(void **state)
+{
+  static const struct {
+    double half, k_theta, hold, floor, wall, hand[2], phi;
+  } rods[] = {{0.0489, 0.034, -1, 1.317, 0.56, {-31.5, -53.3}, -0.79},
+              {0.071367115164992376, 0, 0, 0.6, 664, {-0.0713671151649922, 1.4273423032998476e-4}, 0}};
+  (void)state;
+  for (size_t i = 0; i < sizeof rods / sizeof rods[0]; i++) {
+    const double half = rods[i].half, thick = half / 1000;
+    rig g;
+    rig_init(&g, 200, rods[i].k_theta);
+    stic_scene_set_box(&g.scene, 2 * half, 2 * thick);
+    rig_surface(&g, 0, 0, 90, rods[i].floor, 0);
+    rig_surface(&g, -half, 0, 0, rods[i].wall, 0.2);
+    g.scene.holding_point[0] = rods[i].hold * half, g.scene.holding_point[1] = -rods[i].hold * thick;
+    rig_pose(&g, 0, thick, 0);
+    rig_start(&g);
+    rig_to(&g, rods[i].hand[0], rods[i].hand[1], rods[i].phi);
+    assert_int_equal(g.r.flags & (STIC_FLAG_NO_ANSWER | STIC_FLAG_LIMIT | STIC_FLAG_SLIPPED), 0);
+    assert_true(g.r.x == 0 && g.r.y == thick && g.r.theta == 0);
+    assert_true(g.r.residual < 1e-12);
+    rig_end(&g);
+  }
+}
+
 static void corner(void **state)
 {
   (void)state;
@@ -1011,6 +1037,7 @@ int main(void)
     cmocka_unit_test(no_angle_about_z),
     cmocka_unit_test(slot),
     cmocka_unit_test(corner),
+    cmocka_unit_test(thin_rods),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
