@@ -1,12 +1,12 @@
 /* What moves. The world first, then a layer of signs in the plane of the object's front, which nothing
  * hides: as in a textbook's free-body diagram. */
+#include "../src/angle.h"
 #include "view.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-#define PI 3.14159265358979323846
 #define PRISM_MAX STIC_VERTICES_MAX
 #define COIL_TURNS 6
 #define COIL_STEPS 14
@@ -323,7 +323,7 @@ static void draw_spring(const actors *a)
   for (int i = -1; i <= COIL_TURNS * COIL_STEPS + 1; i++, n++) {
     bool lead = i < 0 || i > COIL_TURNS * COIL_STEPS;
     double along = i < 0 ? 0 : lead ? length : start + span * i / (COIL_TURNS * COIL_STEPS);
-    double angle = 2 * PI * i / COIL_STEPS, side = lead ? 0 : radius * sin(angle);
+    double angle = 2 * STIC_PI * i / COIL_STEPS, side = lead ? 0 : radius * sin(angle);
 
     points[n][0] = from[0] + (d[0] * along - d[1] * side) / length;
     points[n][1] = from[1] + (d[1] * along + d[0] * side) / length;
@@ -340,7 +340,7 @@ static void draw_twist(const actors *a)
 {
   enum { STEPS = 24 };
   const stic_result *r = a->now;
-  double from = r->theta, turn = fmin(fmax(r->hand_theta - r->theta, -2 * PI), 2 * PI),
+  double from = r->theta, turn = fmin(fmax(r->hand_theta - r->theta, -2 * STIC_PI), 2 * STIC_PI),
          radius = 0.24 * a->size;
   double x = r->holding_x, y = r->holding_y, z = layer(a, 5), tip[2], unit = a->view->unit;
   stic_color fill = stic_color_fade(a->theme->spring, 0.30), line = a->theme->spring;

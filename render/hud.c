@@ -1,11 +1,12 @@
 #include "hud.h"
 
+#include "../src/angle.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define DEGREES 57.295779513082321
 #define TICKS_MAX 12
 
 static int px(const stic_hud *h, double design)
@@ -492,7 +493,7 @@ static void draw_cone_plot(stic_hud *h, const stic_canvas *c, const stic_view *v
 
 static double curve_value(const stic_hud *h, const double of[3])
 {
-  return h->plot == STIC_PLOT_X ? of[0] : h->plot == STIC_PLOT_Y ? of[1] : of[2] * DEGREES;
+  return h->plot == STIC_PLOT_X ? of[0] : h->plot == STIC_PLOT_Y ? of[1] : of[2] * STIC_DEG_PER_RAD;
 }
 
 static void value_range(const stic_hud *h, const stic_history *history, double least, double *low,

@@ -1,10 +1,11 @@
 #include "mesh.h"
 
+#include "../src/angle.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
 #define TUBE_SIDES 8
 #define TUBE_POINTS_MAX 512
 
@@ -210,7 +211,7 @@ static void make_ring(const double center[3], double along[3], double radius, st
   normalise(first);
   cross(along, first, second);
   for (int i = 0; i < TUBE_SIDES; i++) {
-    double c = cos(2 * PI * i / TUBE_SIDES), s = sin(2 * PI * i / TUBE_SIDES), n[3];
+    double c = cos(2 * STIC_PI * i / TUBE_SIDES), s = sin(2 * STIC_PI * i / TUBE_SIDES), n[3];
 
     for (int k = 0; k < 3; k++) {
       n[k] = c * first[k] + s * second[k];
@@ -244,7 +245,7 @@ void stic_mesh_tube(stic_mesh *mesh, const double (*points)[3], int count, doubl
 static void ball_point(const double center[3], double radius, int i, int j, int rows, int columns,
                        stic_color color, double p[3], stic_color *lit)
 {
-  double latitude = PI * i / rows - PI / 2, longitude = 2 * PI * j / columns;
+  double latitude = STIC_PI * i / rows - STIC_PI / 2, longitude = 2 * STIC_PI * j / columns;
   double n[3] = {cos(latitude) * cos(longitude), sin(latitude), cos(latitude) * sin(longitude)};
 
   for (int k = 0; k < 3; k++)
@@ -277,8 +278,8 @@ void stic_mesh_disc(stic_mesh *mesh, double x, double y, double z, double radius
   double points[CORNERS][2];
 
   for (int i = 0; i < CORNERS; i++) {
-    points[i][0] = x + radius * cos(2 * PI * i / CORNERS);
-    points[i][1] = y + radius * sin(2 * PI * i / CORNERS);
+    points[i][0] = x + radius * cos(2 * STIC_PI * i / CORNERS);
+    points[i][1] = y + radius * sin(2 * STIC_PI * i / CORNERS);
   }
   stic_mesh_polygon(mesh, (const double(*)[2])points, CORNERS, z, color);
 }

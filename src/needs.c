@@ -37,10 +37,11 @@
  * cross, so that g is within L + R of there, whatever the forces; nothing else raises U. */
 #include "needs.h"
 
+#include "angle.h"
+
 #include <math.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
 #define MARGIN 1e-5   /* of the largest coordinate */
 #define PARALLEL 1e-9 /* rad */
 #define LEVEL 1e-15   /* rad: rounding of a normal; such lines meet 1e10 scenes away */
@@ -131,8 +132,8 @@ void stic_hand_range_box(stic_hand_range *range, const stic_scene *scene, const 
     range->start_pull = fmax(range->start_pull, hypot(x - g.x, y - g.y));
   }
   range->step = hypot(high[0] - low[0], high[1] - low[1]);
-  range->turn = PI; /* the tracker's angle is taken to the nearest turn */
-  range->start_turn = fabs(scene->angle) + PI;
+  range->turn = STIC_PI; /* the tracker's angle is taken to the nearest turn */
+  range->start_turn = fabs(scene->angle) + STIC_PI;
 }
 
 void stic_hand_range_add(stic_hand_range *range, const stic_scene *scene, const stic_sample *sample)
@@ -145,12 +146,12 @@ void stic_hand_range_add(stic_hand_range *range, const stic_scene *scene, const 
   if (first) {
     const vector g = body_to_world(scene, scene->holding_point);
 
-    angle = remainder(angle, 2 * PI);
+    angle = remainder(angle, 2 * STIC_PI);
     range->start_pull = hypot(x - g.x, y - g.y);
     range->start_turn = fabs(angle - scene->angle) + MARGIN;
   } else {
     range->step = fmax(range->step, hypot(x - range->last[0], y - range->last[1]));
-    range->turn = fmax(range->turn, fabs(remainder(angle - range->last_angle, 2 * PI)) + MARGIN);
+    range->turn = fmax(range->turn, fabs(remainder(angle - range->last_angle, 2 * STIC_PI)) + MARGIN);
   }
   range->last[0] = x;
   range->last[1] = y;
@@ -419,7 +420,7 @@ static double distance_of_parts(const part *p, const part *q)
 /* Smallest inner angle of the polygon. */
 static double sharpest_vertex(const stic_scene *scene)
 {
-  double sharpest = PI;
+  double sharpest = STIC_PI;
   const int n = scene->vertex_count;
 
   for (int i = 0; i < n; i++) {
@@ -462,10 +463,10 @@ static bool find_pair(const analysis *a, int i, int j, stic_pair_needs *pair)
   pair->second = j;
   if (distance_of_parts(p, q) > a->needs->size + 4 * a->margin)
     return false;
-  pair->slot = between > PI - PARALLEL && apart > a->margin;
+  pair->slot = between > STIC_PI - PARALLEL && apart > a->margin;
   pair->two_vertex = true;
   pair->corner = !pair->slot && distance_of_parts(p, q) <= 4 * a->margin &&
-                 sharpest_vertex(a->scene) <= PI - between + 1e-6;
+                 sharpest_vertex(a->scene) <= STIC_PI - between + 1e-6;
   pair->wedging = angle_between(p->normal, opposite) <= friction_angle(a, i) + friction_angle(a, j) + 1e-6 &&
                   (!pair->slot || slot_wedges(a, i, j, apart));
   return true;
@@ -479,17 +480,17 @@ static bool cones_surround(const analysis *a, const int surfaces[3])
   for (int i = 0; i < 6; i++) {
     const vector n = a->parts[surfaces[i / 2]].normal;
     const double ray =
-      remainder(atan2(n.y, n.x) + (i & 1 ? 1 : -1) * friction_angle(a, surfaces[i / 2]), 2 * PI);
+      remainder(atan2(n.y, n.x) + (i & 1 ? 1 : -1) * friction_angle(a, surfaces[i / 2]), 2 * STIC_PI);
     int k = i;
 
     for (; k > 0 && rays[k - 1] > ray; k--)
       rays[k] = rays[k - 1];
     rays[k] = ray;
   }
-  widest = rays[0] + 2 * PI - rays[5];
+  widest = rays[0] + 2 * STIC_PI - rays[5];
   for (int i = 1; i < 6; i++)
     widest = fmax(widest, rays[i] - rays[i - 1]);
-  return widest <= PI + 1e-6;
+  return widest <= STIC_PI + 1e-6;
 }
 
 /* Where no two cones face each other, it takes three to hold every direction (Steinitz). */

@@ -1,3 +1,4 @@
+#include "angle.h"
 #include "error.h"
 #include "scene_keys.h"
 
@@ -8,7 +9,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
 #define SIZE_MIN 1e-9 /* m */
 #define SIZE_MAX_M 1e9
 /* An object that begins this deep (relative to its size) is taken as touching. */
@@ -64,8 +64,8 @@ void stic_normal_from_degrees(double degrees, double normal[2])
     memcpy(normal, quarter[(int)(turn / 90.0) & 3], sizeof quarter[0]);
     return;
   }
-  normal[0] = cos(turn / 180.0 * PI);
-  normal[1] = sin(turn / 180.0 * PI);
+  normal[0] = cos(turn / 180.0 * STIC_PI);
+  normal[1] = sin(turn / 180.0 * STIC_PI);
 }
 
 /* ---- examination ------------------------------------------------------------------------- */
@@ -98,7 +98,7 @@ static void examine_numbers(const examination *e, stic_key key, int surface)
   char path[96], expected[128];
 
   for (int i = 0; numbers && i < row->count; i++) {
-    const double v = row->degrees ? numbers[i] / PI * 180.0 : numbers[i];
+    const double v = row->degrees ? numbers[i] / STIC_PI * 180.0 : numbers[i];
 
     if (v >= row->low && v <= row->high && !(row->above_low && v == row->low))
       continue;

@@ -1,5 +1,6 @@
 #include "scene_yaml.h"
 
+#include "angle.h"
 #include "error.h"
 #include "number.h"
 #include "scene_keys.h"
@@ -14,7 +15,6 @@
 
 #define FORMAT_VERSION 1
 #define SURFACE_KEYS (STIC_KEY_COUNT - STIC_KEY_SURFACE)
-#define PI 3.14159265358979323846
 
 /* Where a value came from. */
 typedef struct origin {
@@ -143,7 +143,7 @@ static void read_numbers_key(reading *r, stic_key key, int surface, const yaml_n
     }
   }
   for (int i = 0; i < row->count; i++)
-    kept[i] = row->degrees ? values[i] / 180.0 * PI : values[i];
+    kept[i] = row->degrees ? values[i] / 180.0 * STIC_PI : values[i];
 }
 
 static void read_size(reading *r, const yaml_node_t *node)

@@ -1,11 +1,12 @@
 #include "logitech_decode.h"
 
+#include "../../src/angle.h"
+
 #include <assert.h>
 #include <math.h>
 
 #define FIRST_BYTE 0x80u
 #define METRES_PER_COUNT 25.4e-6
-#define PI 3.14159265358979323846
 
 static int32_t unpack_21(const uint8_t *bytes)
 {
@@ -91,7 +92,7 @@ bool stic_logitech_decode(stic_logitech_decoder *d, const uint8_t *bytes, size_t
 
 static double half_angle(int counts)
 {
-  return counts * (PI / STIC_LOGITECH_TURN);
+  return counts * (STIC_PI / STIC_LOGITECH_TURN);
 }
 
 void stic_logitech_pose(const stic_logitech_record *record, double position[3], double orientation[4])

@@ -1,11 +1,10 @@
 #include "one_euro.h"
 
+#include "../../src/angle.h"
 #include "quaternion.h"
 
 #include <math.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
 
 void stic_one_euro_settings_init(stic_one_euro_settings *settings)
 {
@@ -23,7 +22,7 @@ void stic_one_euro_begin(stic_one_euro *filter, const stic_one_euro_settings *se
 /* The weight of a new value in a first-order low-pass. */
 static double weight(double cutoff, double seconds)
 {
-  const double tau = 1 / (2 * PI * cutoff);
+  const double tau = 1 / (2 * STIC_PI * cutoff);
 
   return seconds / (seconds + tau);
 }

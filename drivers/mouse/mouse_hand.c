@@ -1,10 +1,11 @@
 #include "mouse_hand.h"
 
+#include "../../src/angle.h"
+
 #include <math.h>
 #include <string.h>
 
 #define LEVEL 0.05 /* a ray that falls less than this per unit of depth says nothing about depth */
-#define RADIANS 0.017453292519943295
 
 /* Where the ray has the coordinate `axis` that the hand has. */
 static double ray_share(const stic_mouse_hand *h, const double eye[3], const double through[3], int axis)
@@ -35,7 +36,7 @@ void stic_mouse_hand_slide(stic_mouse_hand *h, const double eye[3], const double
 
 void stic_mouse_hand_turn(stic_mouse_hand *h, double notches, bool fine)
 {
-  h->angle += RADIANS * (fine ? STIC_MOUSE_FINE_TURN_DEG : STIC_MOUSE_TURN_DEG) * notches;
+  h->angle += STIC_RAD_PER_DEG * (fine ? STIC_MOUSE_FINE_TURN_DEG : STIC_MOUSE_TURN_DEG) * notches;
 }
 
 void stic_mouse_hand_push(stic_mouse_hand *h, double notches, double size)

@@ -2,6 +2,7 @@
  * take() by a decoder in a file of its own that knows no I/O. */
 #include "sample_driver.h"
 
+#include "../../src/angle.h"
 #include "../../src/error.h"
 #include "../../src/io/timing.h"
 
@@ -12,7 +13,6 @@
 
 #define RADIUS 0.1 /* m */
 #define TURN_S 4.0 /* s a circle */
-#define PI 3.14159265358979323846
 
 /* `base` comes first, so that a pointer to one is a pointer to the other. All memory is here. */
 typedef struct sample_device {
@@ -50,7 +50,7 @@ static stic_status sample_open(const stic_device_spec *spec, stic_device **devic
 
 static void take(sample_device *d, stic_device_sample *sample)
 {
-  const double angle = 2 * PI / TURN_S * ((double)(d->due_ns - d->start_ns) / 1e9);
+  const double angle = 2 * STIC_PI / TURN_S * ((double)(d->due_ns - d->start_ns) / 1e9);
 
   memset(sample, 0, sizeof *sample);
   sample->t_ns = sample->source_ns = d->due_ns;

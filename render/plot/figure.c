@@ -4,10 +4,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../../src/angle.h"
 #include "../../src/error.h"
 #include "decimate.h"
 
-#define DEGREES (180 / 3.14159265358979323846)
 #define STATE_LABEL_MIN 0.11 /* part of the time axis from which a state's name fits */
 
 /* Blocks of the data file, in this order; forces follow for each surface. */
@@ -55,7 +55,7 @@ static double y_of(const stic_figure *f, const stic_plot_row *r, int who)
 static double angle_of(const stic_figure *f, const stic_plot_row *r, int who)
 {
   (void)f;
-  return DEGREES * (who == BLOCK_HAND ? r->hand_theta : r->theta);
+  return STIC_DEG_PER_RAD * (who == BLOCK_HAND ? r->hand_theta : r->theta);
 }
 
 static double normal_of(const stic_figure *f, const stic_plot_row *r, int n)

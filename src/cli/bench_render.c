@@ -1,5 +1,6 @@
 /* stiction bench render: what a picture costs, on one core. */
 #define _XOPEN_SOURCE 700 /* mkdtemp(), nftw() */
+#include "../angle.h"
 #include "../error.h"
 #include "../io/timing.h"
 #include "bench.h"
@@ -17,7 +18,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#define PI 3.14159265358979323846
 #define PICTURES_MAX 62 /* two seconds */
 #define WARM_UP 3
 #define FIRSTS_MAX 5
@@ -69,13 +69,13 @@ static void make_scene(stic_scene *scene)
 static stic_sample hand_sample(int i)
 {
   const double t = i / (double)STIC_TARGET_HZ, press = fmin(1, t);
-  const double angle = 0.35 + 0.3 * sin(2 * PI * 0.23 * t);
+  const double angle = 0.35 + 0.3 * sin(2 * STIC_PI * 0.23 * t);
   stic_sample s;
 
   memset(&s, 0, sizeof s);
   s.t_ns = (int64_t)i * STIC_FRAME_NS;
-  s.position[0] = 0.25 - press * 0.19 + 0.04 * cos(2 * PI * 0.31 * t);
-  s.position[1] = 0.25 - press * 0.21 + 0.02 * sin(2 * PI * 0.31 * t);
+  s.position[0] = 0.25 - press * 0.19 + 0.04 * cos(2 * STIC_PI * 0.31 * t);
+  s.position[1] = 0.25 - press * 0.21 + 0.02 * sin(2 * STIC_PI * 0.31 * t);
   s.orientation[2] = sin(angle / 2);
   s.orientation[3] = cos(angle / 2);
   return s;

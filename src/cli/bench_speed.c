@@ -1,5 +1,6 @@
 /* stiction bench speed: what a sample costs. */
 #define _XOPEN_SOURCE 700 /* mkdtemp() */
+#include "../angle.h"
 #include "../error.h"
 #include "../io/log_csv.h"
 #include "../io/timing.h"
@@ -17,7 +18,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#define PI 3.14159265358979323846
 #define SAMPLE_NS 20000000 /* 50 Hz, the ultrasonic tracker's rate */
 #define HASH_START UINT64_C(14695981039346656037)
 #define HASH_STEP UINT64_C(1099511628211)
@@ -49,8 +49,8 @@ static void make_scene(stic_scene *scene, int vertices)
   } else {
     scene->vertex_count = vertices;
     for (int i = 0; i < vertices; i++) {
-      scene->vertices[i][0] = 0.08 * cos(2 * PI * i / vertices);
-      scene->vertices[i][1] = 0.08 * sin(2 * PI * i / vertices);
+      scene->vertices[i][0] = 0.08 * cos(2 * STIC_PI * i / vertices);
+      scene->vertices[i][1] = 0.08 * sin(2 * STIC_PI * i / vertices);
     }
   }
   scene->x = 0.3;
@@ -66,13 +66,15 @@ static void make_scene(stic_scene *scene, int vertices)
 static stic_sample hand_sample(int64_t i)
 {
   const double t = (double)i * (SAMPLE_NS / 1e9), press = fmin(1, (double)i / 50);
-  const double angle = 0.35 + 0.3 * sin(2 * PI * 0.23 * t);
+  const double angle = 0.35 + 0.3 * sin(2 * STIC_PI * 0.23 * t);
   stic_sample s;
 
   memset(&s, 0, sizeof s);
   s.t_ns = i * SAMPLE_NS;
-  s.position[0] = 0.3 - press * 0.25 + 0.02 * cos(2 * PI * 0.31 * t) + 0.0003 * sin(2 * PI * 9.3 * t);
-  s.position[1] = 0.3 - press * 0.27 + 0.01 * sin(2 * PI * 0.31 * t) + 0.0003 * sin(2 * PI * 10.7 * t);
+  s.position[0] =
+    0.3 - press * 0.25 + 0.02 * cos(2 * STIC_PI * 0.31 * t) + 0.0003 * sin(2 * STIC_PI * 9.3 * t);
+  s.position[1] =
+    0.3 - press * 0.27 + 0.01 * sin(2 * STIC_PI * 0.31 * t) + 0.0003 * sin(2 * STIC_PI * 10.7 * t);
   s.orientation[2] = sin(angle / 2);
   s.orientation[3] = cos(angle / 2);
   return s;
@@ -259,7 +261,7 @@ static stic_status bench_part(const part_case *c, stic_level level, bool quick, 
     if (c->depth > 0)
       add_surface(&scene, 0, -c->depth * (i + 1), 90);
     else
-      add_surface(&scene, 10 * cos(way * PI / 180), 10 * sin(way * PI / 180), way + 180);
+      add_surface(&scene, 10 * cos(way * STIC_PI / 180), 10 * sin(way * STIC_PI / 180), way + 180);
   }
   for (int s = 0; s < scene.surface_count; s++)
     scene.surfaces[s].friction = (stic_friction){c->mu_s, c->mu_d};

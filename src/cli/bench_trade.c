@@ -1,4 +1,5 @@
 /* stiction bench trade: what accuracy costs and what it buys, on the user's own scene. */
+#include "../angle.h"
 #include "../error.h"
 #include "../io/outfile.h"
 #include "../io/timing.h"
@@ -196,7 +197,7 @@ enum { SHIFTS = 7, DIRECTIONS = 16 };
  * object forgets its start at once, but not where it is held. */
 static void shift_start(const stic_motion *from, double shift, int direction, double size, stic_motion *to)
 {
-  const double a = 6.283185307179586 * direction / DIRECTIONS;
+  const double a = 2 * STIC_PI * direction / DIRECTIONS;
 
   *to = *from;
   to->scene.x += shift * size * cos(a);

@@ -1,6 +1,7 @@
 /* stiction bench validate: closed forms of friction, as a table that anyone can run. Only the public
  * interface is used; each formula is derived where it stands. N is the normal force, F the hand's pull, h the
  * depth by which the hand is pressed below the height of flush contact, so that N = k_p h. */
+#include "../angle.h"
 #include "../error.h"
 #include "../io/outfile.h"
 #include "bench.h"
@@ -11,7 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
 #define ONSET 1e-9 /* when a slip begins: relative error that is ours to meet */
 
 /* ---- table ------------------------------------------------------------------------------- */
@@ -179,7 +179,7 @@ static void lead_box(floor_box *b, double along, double height, double turn)
 static void press_box(floor_box *b, table *t, double degrees, double k_p, double mu_s, double mu_d,
                       double depth)
 {
-  const double alpha = degrees / 180 * PI;
+  const double alpha = degrees / 180 * STIC_PI;
 
   stand_init(&b->s, t, k_p, k_p / 400);
   stic_scene_set_box(&b->s.scene, 0.16, 0.08);
@@ -323,7 +323,7 @@ static void stick_slip(table *t)
 
 static void start_sliver(stand *s, table *t, double e, double upright, double u)
 {
-  const double up = PI / 2 - upright - SLIVER_TURN;
+  const double up = STIC_PI / 2 - upright - SLIVER_TURN;
 
   stand_init(s, t, 200, 200 * SLIVER_A * SLIVER_D / e);
   add_vertex(s, 0, 0);
@@ -399,13 +399,13 @@ static void snap_through(table *t)
   }
   row(t, "V5", "below the fold: rest reached from below, rad", kepler_root(ROOTS_E, ROOTS_PHI, 1.55, fold_15),
       sliver_rests(t, ROOTS_E, 3.1, fold_15, ROOTS_PHI), 1e-12);
-  row(t, "V5", "... from above, rad", kepler_root(ROOTS_E, ROOTS_PHI, 2 * PI - fold_15, 4.65),
+  row(t, "V5", "... from above, rad", kepler_root(ROOTS_E, ROOTS_PHI, 2 * STIC_PI - fold_15, 4.65),
       sliver_rests(t, ROOTS_E, 3.1, 4, ROOTS_PHI), 1e-12);
   row(t, "V5", "... and the unstable one that parts them, rad",
-      kepler_root(ROOTS_E, ROOTS_PHI, fold_15, 2 * PI - fold_15), find_limit(t, rests_beyond, fold_15, 4),
-      1e-12);
+      kepler_root(ROOTS_E, ROOTS_PHI, fold_15, 2 * STIC_PI - fold_15),
+      find_limit(t, rests_beyond, fold_15, 4), 1e-12);
   for (double u = 1.9; u < 4.9; u += 0.1)
-    above += error_of(kepler_root(ROOTS_E, 3.43, 2 * PI - fold_15, 4.95),
+    above += error_of(kepler_root(ROOTS_E, 3.43, 2 * STIC_PI - fold_15, 4.95),
                       sliver_rests(t, ROOTS_E, 3.4, u, 3.43)) > 1e-12;
   row(t, "V5", "above the fold: starts that end anywhere else", 0, above, 0);
 }
@@ -583,15 +583,15 @@ static const ladder LADDERS[] = {{0.3, 0.4, 0.5}, {0.6, 0.2, 0.5}, {0.25, 0, 0.7
 
 static bool ladder_0(table *t, double degrees)
 {
-  return ladder_holds(t, &LADDERS[0], degrees / 180 * PI);
+  return ladder_holds(t, &LADDERS[0], degrees / 180 * STIC_PI);
 }
 static bool ladder_1(table *t, double degrees)
 {
-  return ladder_holds(t, &LADDERS[1], degrees / 180 * PI);
+  return ladder_holds(t, &LADDERS[1], degrees / 180 * STIC_PI);
 }
 static bool ladder_2(table *t, double degrees)
 {
-  return ladder_holds(t, &LADDERS[2], degrees / 180 * PI);
+  return ladder_holds(t, &LADDERS[2], degrees / 180 * STIC_PI);
 }
 
 /* At the limit both contacts are at theirs: N_2 = mu_1 N_1 and N_1 + mu_2 N_2 = W; moments about the foot:
@@ -605,8 +605,8 @@ static void ladder_limit(table *t)
     char what[80];
 
     snprintf(what, sizeof what, "ladder holds from, mu %g and %g, load at %g, deg", m1, m2, a);
-    row(t, "V11", what, atan((a * (1 + m1 * m2) - m1 * m2) / m1) / PI * 180, find_limit(t, holds[i], 10, 85),
-        ONSET);
+    row(t, "V11", what, atan((a * (1 + m1 * m2) - m1 * m2) / m1) / STIC_PI * 180,
+        find_limit(t, holds[i], 10, 85), ONSET);
   }
 }
 
@@ -737,7 +737,7 @@ static void centre_of_pressure(table *t)
 
 static double tremor(long i, double hz)
 {
-  return sin(2 * PI * hz * (double)i / 31);
+  return sin(2 * STIC_PI * hz * (double)i / 31);
 }
 
 /* How far the box goes in all frames, loaded by a part of its friction limit; `shake` adds a hand's tremor that

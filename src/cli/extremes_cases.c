@@ -1,12 +1,12 @@
 /* The sweeps of `stiction bench extremes`. Lengths of a tour are in units near the object's size, from a corner of
  * floor and wall at the origin. */
+#include "../angle.h"
 #include "extremes.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-#define PI 3.14159265358979323846
 #define HALF_WIDTH 0.4
 #define HALF_HEIGHT 0.2
 
@@ -180,8 +180,8 @@ static bool polygon(stic_extreme *e, int index, int frames)
   v = e->scene.vertices;
   e->scene.vertex_count = n;
   for (int i = 0; i < n; i++) {
-    v[i][0] = HALF_WIDTH * cos(2 * PI * i / n - 2.0);
-    v[i][1] = HALF_WIDTH * sin(2 * PI * i / n - 2.0);
+    v[i][0] = HALF_WIDTH * cos(2 * STIC_PI * i / n - 2.0);
+    v[i][1] = HALF_WIDTH * sin(2 * STIC_PI * i / n - 2.0);
   }
   if (kind == 1 && n > 3) {
     const double x = v[2][0] - v[0][0], y = v[2][1] - v[0][1], out = 2e-8;
@@ -190,10 +190,10 @@ static bool polygon(stic_extreme *e, int index, int frames)
     v[1][1] = (v[0][1] + v[2][1]) / 2 - out * x;
   }
   if (kind == 2) { /* far enough for the loader, on the circle */
-    const double turn = 2 * PI / n - (n < 5 ? 1e-8 : 1e-3);
+    const double turn = 2 * STIC_PI / n - (n < 5 ? 1e-8 : 1e-3);
 
-    v[1][0] = HALF_WIDTH * cos(2 * PI / n - turn - 2.0);
-    v[1][1] = HALF_WIDTH * sin(2 * PI / n - turn - 2.0);
+    v[1][0] = HALF_WIDTH * cos(2 * STIC_PI / n - turn - 2.0);
+    v[1][1] = HALF_WIDTH * sin(2 * STIC_PI / n - turn - 2.0);
   }
   return index / KINDS < COUNTS;
 }
@@ -231,7 +231,7 @@ static bool surfaces(stic_extreme *e, int index, int frames)
 {
   enum { KINDS = 5 };
   const int i = index / KINDS, kind = index % KINDS;
-  const double angle = i < ANGLE_COUNT ? ANGLES[i] : 0, degrees = angle / PI * 180;
+  const double angle = i < ANGLE_COUNT ? ANGLES[i] : 0, degrees = angle / STIC_PI * 180;
 
   (void)frames;
   standard_case(e, 1);
@@ -276,7 +276,7 @@ static void turns(stic_extreme *e, int i, const stic_result *last)
   const int back = e->frames / 2;
 
   (void)last;
-  hand_at(e, 0.3, 0.3, 2 * PI * 0.4 * (i < back ? i : 2 * back - i));
+  hand_at(e, 0.3, 0.3, 2 * STIC_PI * 0.4 * (i < back ? i : 2 * back - i));
 }
 
 /* Pressed on the floor at the origin of coordinates, then steps of `parameter` m. */

@@ -1,4 +1,5 @@
 /* A case of `stiction bench extremes` as a scene file and a trace, so that `stiction replay` shows it. */
+#include "../angle.h"
 #include "../io/outfile.h"
 #include "../io/trace_csv.h"
 #include "extremes.h"
@@ -8,23 +9,21 @@
 #include <stdio.h>
 #include <sys/stat.h>
 
-#define PI 3.14159265358979323846
-
 /* As the reader of scene files makes radians. */
 static double radians(double degrees)
 {
-  return degrees / 180.0 * PI;
+  return degrees / 180.0 * STIC_PI;
 }
 
 void stic_extreme_canonical(stic_scene *scene)
 {
-  scene->angle = radians(scene->angle / PI * 180.0);
+  scene->angle = radians(scene->angle / STIC_PI * 180.0);
 }
 
 /* The degrees that are read as exactly this angle. */
 static double degrees_of(double angle)
 {
-  double up = angle / PI * 180.0, down = up;
+  double up = angle / STIC_PI * 180.0, down = up;
 
   for (int i = 0; i < 8; i++, up = nextafter(up, INFINITY), down = nextafter(down, -INFINITY)) {
     if (radians(up) == angle)
@@ -32,7 +31,7 @@ static double degrees_of(double angle)
     if (radians(down) == angle)
       return down;
   }
-  return angle / PI * 180.0;
+  return angle / STIC_PI * 180.0;
 }
 
 static void print_scene(stic_outfile *out, const stic_scene *s)

@@ -1,11 +1,12 @@
 #include "moments.h"
 
+#include "../angle.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define DEGREES 57.295779513082321
 #define DEEDS_MAX 6 /* told of one row; more could not be read */
 
 /* ---- events in words --------------------------------------------------------------------- */
@@ -59,7 +60,9 @@ static void deed_text(const stic_scene *scene, const deed *d, char *out, size_t 
   case STIC_EVENT_SLIP:
     snprintf(out, out_size, "vertex %d slips %.3g mm on %s%s", d->vertex, d->length * 1e3, on, times);
     break;
-  case STIC_EVENT_SNAP: snprintf(out, out_size, "snaps round by %.3g\xc2\xb0", d->length * DEGREES); break;
+  case STIC_EVENT_SNAP:
+    snprintf(out, out_size, "snaps round by %.3g\xc2\xb0", d->length * STIC_DEG_PER_RAD);
+    break;
   case STIC_EVENT_TAKE: snprintf(out, out_size, "taken"); break;
   case STIC_EVENT_RELEASE: snprintf(out, out_size, "let go"); break;
   }

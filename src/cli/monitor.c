@@ -1,6 +1,7 @@
 #include "monitor.h"
 
 #include "../../drivers/motion/tracker_frame.h"
+#include "../angle.h"
 #include "../error.h"
 
 #include <math.h>
@@ -8,7 +9,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#define DEGREES (180 / 3.14159265358979323846)
 #define WINDOW_NS INT64_C(2000000000) /* of rate and jitter */
 #define TRAIL_STEP_NS 10000000
 #define SPAN_MIN 0.2 /* m, of the sketch's height at least */
@@ -88,9 +88,9 @@ static void angles_of(const double q[4], double out[3])
   const double x = q[0], y = q[1], z = q[2], w = q[3];
   const double sine = 2 * (w * x - y * z);
 
-  out[0] = DEGREES * atan2(2 * (x * z + w * y), 1 - 2 * (x * x + y * y));
-  out[1] = DEGREES * asin(fmax(-1, fmin(1, sine)));
-  out[2] = DEGREES * atan2(2 * (x * y + w * z), 1 - 2 * (x * x + z * z));
+  out[0] = STIC_DEG_PER_RAD * atan2(2 * (x * z + w * y), 1 - 2 * (x * x + y * y));
+  out[1] = STIC_DEG_PER_RAD * asin(fmax(-1, fmin(1, sine)));
+  out[2] = STIC_DEG_PER_RAD * atan2(2 * (x * y + w * z), 1 - 2 * (x * x + z * z));
 }
 
 /* ---- text -------------------------------------------------------------------------------- */

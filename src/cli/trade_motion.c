@@ -1,4 +1,5 @@
 /* Motions for `stiction bench trade` and `run --accuracy auto`: read, made or resampled; solved; compared. */
+#include "../angle.h"
 #include "../error.h"
 #include "../io/log_csv.h"
 #include "../io/timing.h"
@@ -12,7 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
 #define HASH_START UINT64_C(14695981039346656037)
 #define HASH_STEP UINT64_C(1099511628211)
 
@@ -92,12 +92,12 @@ stic_status stic_motion_built_in(stic_motion *motion, stic_error *err)
     return no_memory(err);
   motion->count = 400;
   for (int i = 0; i < 400; i++) {
-    const double t = i / 31.0, press = fmin(1, t), angle = 0.35 + 0.3 * sin(2 * PI * 0.23 * t);
+    const double t = i / 31.0, press = fmin(1, t), angle = 0.35 + 0.3 * sin(2 * STIC_PI * 0.23 * t);
     stic_sample *s = &motion->samples[i];
 
     s->t_ns = (int64_t)i * STIC_FRAME_NS;
-    s->position[0] = 0.3 - press * 0.22 + 0.03 * cos(2 * PI * 0.31 * t);
-    s->position[1] = 0.3 - press * 0.25 + 0.01 * sin(2 * PI * 0.31 * t);
+    s->position[0] = 0.3 - press * 0.22 + 0.03 * cos(2 * STIC_PI * 0.31 * t);
+    s->position[1] = 0.3 - press * 0.25 + 0.01 * sin(2 * STIC_PI * 0.31 * t);
     s->orientation[2] = sin(angle / 2);
     s->orientation[3] = cos(angle / 2);
   }
@@ -163,11 +163,12 @@ static int find_legs(const stic_scene *scene, const double home[2], leg *legs)
 static void leg_at(const leg *l, double part, double place[2], double *turn)
 {
   const double in = fmin(1, fmin(part, 1 - part) / 0.15), u = fmax(0, fmin(1, (part - 0.15) / 0.7));
-  const double press = in * in * (3 - 2 * in) * (1 + 0.2 * sin(10 * PI * u)), slide = sin(6 * PI * u);
+  const double press = in * in * (3 - 2 * in) * (1 + 0.2 * sin(10 * STIC_PI * u)),
+               slide = sin(6 * STIC_PI * u);
 
   for (int k = 0; k < 2; k++)
     place[k] = press * l->away[k] + slide * l->along[k];
-  *turn = 0.5 * sin(4 * PI * u);
+  *turn = 0.5 * sin(4 * STIC_PI * u);
 }
 
 stic_status stic_motion_along_surfaces(stic_motion *motion, const stic_scene *scene, int count,
@@ -194,8 +195,8 @@ stic_status stic_motion_along_surfaces(stic_motion *motion, const stic_scene *sc
 
     leg_at(&legs[k], at - k, place, &turn);
     s->t_ns = (int64_t)i * STIC_FRAME_NS;
-    s->position[0] = home[0] + place[0] + tremor * sin(2 * PI * 9.3 * t);
-    s->position[1] = home[1] + place[1] + tremor * sin(2 * PI * 10.7 * t);
+    s->position[0] = home[0] + place[0] + tremor * sin(2 * STIC_PI * 9.3 * t);
+    s->position[1] = home[1] + place[1] + tremor * sin(2 * STIC_PI * 10.7 * t);
     s->orientation[2] = sin((scene->angle + turn) / 2);
     s->orientation[3] = cos((scene->angle + turn) / 2);
     s->buttons = STIC_BUTTON_GRIP;
@@ -209,7 +210,7 @@ static double hand_angle(const stic_sample *sample, double last)
 {
   const double *q = sample->orientation;
 
-  return q[2] == 0 && q[3] == 0 ? last : last + remainder(2 * atan2(q[2], q[3]) - last, 2 * PI);
+  return q[2] == 0 && q[3] == 0 ? last : last + remainder(2 * atan2(q[2], q[3]) - last, 2 * STIC_PI);
 }
 
 /* x, y, z and the unwrapped angle of each sample. */

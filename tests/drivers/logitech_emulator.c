@@ -1,6 +1,8 @@
 #define _XOPEN_SOURCE 700 /* posix_openpt() */
 #include "logitech_emulator.h"
 
+#include "../../src/angle.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
@@ -19,7 +21,6 @@
 #define BIT_FRINGE 0x40u
 #define BIT_LEFT 0x04u
 #define BIT_RIGHT 0x01u
-#define PI 3.14159265358979323846
 
 void emulator_pack(const emulator_record *record, uint8_t bytes[EMULATOR_RECORD])
 {
@@ -39,7 +40,7 @@ void emulator_pack(const emulator_record *record, uint8_t bytes[EMULATOR_RECORD]
 
 static void circle(void *context, int64_t t_ns, emulator_record *record)
 {
-  const double angle = 2 * PI * ((double)t_ns / 1e9) / 4, radius = 0.1 / 25.4e-6;
+  const double angle = 2 * STIC_PI * ((double)t_ns / 1e9) / 4, radius = 0.1 / 25.4e-6;
 
   (void)context;
   memset(record, 0, sizeof *record);

@@ -1,6 +1,7 @@
 /* The wire format of the Logitech tracker: known records both ways, finding records, poses. */
 #include "../../drivers/logitech/logitech_decode.h"
 #include "../files/help.h"
+#include "angle.h"
 #include "logitech_emulator.h"
 
 #include <math.h>
@@ -115,7 +116,7 @@ static void rotate_by_quaternion(const double q[4], const double v[3], double ou
 
 static void test_pose(void **state)
 {
-  const double v[3] = {0.3, -0.5, 0.7}, to_rad = 3.14159265358979323846 / 7200;
+  const double v[3] = {0.3, -0.5, 0.7}, to_rad = STIC_PI / 7200;
   stic_logitech_record record = {{1000, -2000, 40000}, 0, 0, 0, 0};
 
   (void)state;

@@ -4,12 +4,12 @@
 #include "../../drivers/motion/rate_to_pose.h"
 #include "../../drivers/motion/tracker_frame.h"
 #include "../files/help.h"
+#include "angle.h"
 
 #include <math.h>
 #include <string.h>
 
 #define MS INT64_C(1000000)
-#define PI 3.14159265358979323846
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
 static stic_device_sample rate_sample(int64_t t_ns, double vx, double wz, uint32_t buttons)
@@ -51,10 +51,10 @@ static void test_integration(void **state)
   begin(&r, 0);
   /* 0.1 m/s and a quarter turn a second, for two seconds, at uneven times. */
   for (int64_t t = 0; t <= 2000; t += t % 3 == 0 ? 7 : 9)
-    s = step(&r, t * MS, 0.1, PI / 2, 0);
+    s = step(&r, t * MS, 0.1, STIC_PI / 2, 0);
   s = step(&r, 2010 * MS, 0, 0, 0);
   assert_near(s.position[0], 0.201, 1e-12);
-  assert_near(2 * atan2(s.orientation[2], s.orientation[3]), PI / 2 * 2.01, 1e-9);
+  assert_near(2 * atan2(s.orientation[2], s.orientation[3]), STIC_PI / 2 * 2.01, 1e-9);
   assert_int_equal(s.flags, STIC_SAMPLE_VELOCITY | STIC_SAMPLE_POSITION | STIC_SAMPLE_ORIENTATION |
                               STIC_SAMPLE_TRACKED);
   s = step(&r, 3000 * MS, 0, 0, 0);
@@ -203,8 +203,8 @@ static void test_filter_formula(void **state)
 {
   stic_one_euro f;
   stic_device_sample a = pose_sample(0, 0, 0), b = pose_sample(20 * MS, 0.01, 0);
-  const double dt = 0.02, ad = dt / (dt + 1 / (2 * PI * 1.2)), speed = ad * 0.5;
-  const double cutoff = 1.15 + 0.5 * speed, weight = dt / (dt + 1 / (2 * PI * cutoff));
+  const double dt = 0.02, ad = dt / (dt + 1 / (2 * STIC_PI * 1.2)), speed = ad * 0.5;
+  const double cutoff = 1.15 + 0.5 * speed, weight = dt / (dt + 1 / (2 * STIC_PI * cutoff));
 
   (void)state;
   begin_filter(&f);
@@ -234,9 +234,9 @@ static void test_filter_gap(void **state)
   s = pose_sample(40 * MS, 4, 1);
   stic_one_euro_apply(&f, &s);
   assert_true(s.position[0] == 4);
-  s = pose_sample(60 * MS, 4, 1 + 2 * PI);
+  s = pose_sample(60 * MS, 4, 1 + 2 * STIC_PI);
   stic_one_euro_apply(&f, &s);
-  assert_near(remainder(angle_of(&s) - 1, 2 * PI), 0, 1e-12);
+  assert_near(remainder(angle_of(&s) - 1, 2 * STIC_PI), 0, 1e-12);
 }
 
 /* ---- place in the room ------------------------------------------------------------------- */
@@ -289,7 +289,7 @@ static void test_frame_turned(void **state)
   memcpy(frame.axes, turned, sizeof turned);
   s = pose_sample(5, 0, 0.3);
   stic_tracker_frame_apply(&frame, &s);
-  assert_near(angle_of(&s), 0.3 + PI / 2, 1e-14);
+  assert_near(angle_of(&s), 0.3 + STIC_PI / 2, 1e-14);
 }
 
 static void test_matrices(void **state)

@@ -8,6 +8,7 @@
 
 #include "../../drivers/connection.h"
 #include "../../drivers/mouse/mouse_driver.h"
+#include "angle.h"
 #include "io/timing.h"
 
 #define SECOND_NS INT64_C(1000000000)
@@ -128,7 +129,7 @@ static void test_hand(void **state)
   (void)state;
   stic_mouse_hand_turn(&h, -3, false);
   stic_mouse_hand_turn(&h, 2, true);
-  assert_true(fabs(h.angle - (0.4 - 5.5 * 3.14159265358979323846 / 180)) < 1e-15);
+  assert_true(fabs(h.angle - (0.4 - 5.5 * STIC_PI / 180)) < 1e-15);
   stic_mouse_hand_push(&h, 5, 0.5);
   assert_true(fabs(h.position[2] - (0.3 - 5 * 0.02 * 0.5)) < 1e-15);
   h.position[2] = 4; /* a third of the way from the point to the eye */

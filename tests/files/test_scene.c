@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "angle.h"
 #include "scene_yaml.h"
 
 typedef struct wrong {
@@ -151,7 +152,7 @@ static void test_good_scene(void **state)
   assert_int_equal(s.vertex_count, 4);
   assert_true(s.vertices[0][0] == -0.08 && s.vertices[0][1] == -0.04 && s.vertices[2][0] == 0.08);
   assert_true(s.depth == 0.1 && s.x == 0.3 && s.y == 0.2 && s.z == 0);
-  assert_true(fabs(s.angle - 20.05 * 3.14159265358979323846 / 180) < 1e-15);
+  assert_true(fabs(s.angle - 20.05 * STIC_PI / 180) < 1e-15);
   assert_true(s.stiffness == 200 && s.rotational_stiffness == 0.5 && s.reach == 0.05);
   assert_int_equal(s.hold, STIC_HOLD_START);
   assert_int_equal(s.surface_count, 2);

@@ -3,6 +3,7 @@
  * printed, to look into a slow one. */
 #include "memory_file.h"
 
+#include "angle.h"
 #include "inside.h"
 #include "statics/core.h"
 #include "invariants/checker.h"
@@ -50,7 +51,7 @@ static void take_shape(bytes *b, stic_scene *s)
   }
   s->vertex_count = n;
   for (int i = 0; i < n; i++) {
-    const double t = 6.283185307179586 * (i + 0.45 * take_part(b)) / n;
+    const double t = 2 * STIC_PI * (i + 0.45 * take_part(b)) / n;
 
     s->vertices[i][0] = 0.05 * cos(t);
     s->vertices[i][1] = 0.05 * aspect * sin(t);

@@ -2,6 +2,7 @@
  * force is given anew before each of the engine's steps, as is the friction of each surface. */
 #include "contest.h"
 
+#include "angle.h"
 #include "error.h"
 #include "io/timing.h"
 
@@ -9,7 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
 #define NEAR 5e-4  /* m: vertices that close to a surface are in contact */
 #define FAR 10.0   /* m, and m/s by ten: an object that comes there is lost */
 #define SETTLE 2.0 /* s under the first hand pose, before the first row */
@@ -35,7 +35,7 @@ typedef struct run {
 
 static double raw_angle(const stic_sample *s, double last)
 {
-  return last + remainder(2 * atan2(s->orientation[2], s->orientation[3]) - last, 2 * PI);
+  return last + remainder(2 * atan2(s->orientation[2], s->orientation[3]) - last, 2 * STIC_PI);
 }
 
 /* From the centre to the holding point. */
@@ -108,7 +108,7 @@ static void look(run *r)
   const peer_motion *m = &r->motion;
 
   r->engine->read(r->world, &r->motion);
-  r->motion.angle = last + remainder(r->motion.angle - last, 2 * PI);
+  r->motion.angle = last + remainder(r->motion.angle - last, 2 * STIC_PI);
   r->lost = !(hypot(m->x, m->y) < FAR && hypot(m->vx, m->vy) < 10 * FAR && fabs(m->turning) < 1000 * FAR);
   if (r->lost)
     r->motion = (peer_motion){NAN, NAN, NAN, NAN, NAN, NAN};

@@ -1,6 +1,7 @@
 /* stiction beside dynamics engines: the same scenes and hands, one table. */
 #include "field.h"
 
+#include "angle.h"
 #include "cli/cli.h"
 #include "error.h"
 #include "io/outfile.h"
@@ -78,7 +79,7 @@ static void print_scene(const table *t, int scene)
     char onset[32], creep[32], drift[32];
 
     printf("  %-28s %9.3g %9.3g %9.3g %9.3g %9.3g %9s %9s %9s %9lld %9lld\n", t->who[i].name,
-           d->position_rms * 1e3, d->position_max * 1e3, d->angle_rms * 57.29577951308232, d->force_rms * 100,
+           d->position_rms * 1e3, d->position_max * 1e3, d->angle_rms * STIC_DEG_PER_RAD, d->force_rms * 100,
            d->force_max * 100, text(s->onset * 100, "%.2g", onset), text(s->creep * 1e6, "%.2g", creep),
            text(s->drift * 1e6, "%.2g", drift), (long long)s->median_ns, (long long)s->worst_ns);
   }

@@ -1,5 +1,6 @@
 /* MuJoCo: elliptic cone, Newton's method, then noslip iterations (tuning.iterations). firmness: the impedance of its
  * soft contacts, below 1. */
+#include "angle.h"
 #include "peer.h"
 
 #include <math.h>
@@ -42,7 +43,7 @@ static mjModel *make_model(const stic_scene *scene, const peer_tuning *tuning, d
                   s->point[0] - scene->x, s->point[1] - scene->y, normal[0], normal[1]);
   }
   snprintf(text + n, sizeof text - (size_t)n, body, tuning->mass, inertia, inertia, inertia, corner[0],
-           corner[1], scene->depth / 2, scene->angle * (180 / 3.14159265358979323846));
+           corner[1], scene->depth / 2, scene->angle * STIC_DEG_PER_RAD);
   spec = mj_parseXMLString(text, NULL, error, sizeof error);
   if (spec)
     model = mj_compile(spec, NULL);

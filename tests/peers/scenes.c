@@ -2,6 +2,7 @@
  * and the object holds as long as the hand is not further aside than mu_s times that depth. */
 #include "scenes.h"
 
+#include "angle.h"
 #include "error.h"
 #include "io/timing.h"
 
@@ -10,7 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
 #define DEPTH 0.02 /* m below flush */
 #define MU_S 0.5
 #define MU_D 0.3
@@ -99,8 +99,8 @@ static stic_status hold_trembling(peer_scene *p, double seconds, stic_error *err
   for (int i = p->rest_row - 2 * STIC_TARGET_HZ; status == STIC_OK && i < p->motion.count; i++) {
     const double t = (double)p->motion.samples[i].t_ns * 1e-9;
 
-    p->motion.samples[i].position[0] += 1e-4 * sin(2 * PI * 9.3 * t);
-    p->motion.samples[i].position[1] += 1e-4 * sin(2 * PI * 10.7 * t);
+    p->motion.samples[i].position[0] += 1e-4 * sin(2 * STIC_PI * 9.3 * t);
+    p->motion.samples[i].position[1] += 1e-4 * sin(2 * STIC_PI * 10.7 * t);
   }
   return status;
 }
@@ -113,7 +113,7 @@ static stic_status hold_slope(peer_scene *p, double seconds, stic_error *err)
   stic_status status;
 
   begin(p, 0.16, 0.08);
-  scene->surfaces[0].normal_deg = 90 + angle * (180 / PI);
+  scene->surfaces[0].normal_deg = 90 + angle * STIC_DEG_PER_RAD;
   scene->angle = angle;
   scene->x = x;
   scene->y = y + 0.01;

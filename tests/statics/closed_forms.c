@@ -270,8 +270,8 @@ static void start_sliver(rig *g, const variant *w, double e, double d, double up
   double l = w->scale, far = 0.1 * l;
   rig_variant(g, w, 200 * SLIVER_A * d / e);
   rig_vertex(g, 0, 0);
-  rig_vertex(g, far * cos(PI / 2 - upright - 0.01), far * sin(PI / 2 - upright - 0.01));
-  rig_vertex(g, far * cos(PI / 2 - upright + 0.01), far * sin(PI / 2 - upright + 0.01));
+  rig_vertex(g, far * cos(STIC_PI / 2 - upright - 0.01), far * sin(STIC_PI / 2 - upright - 0.01));
+  rig_vertex(g, far * cos(STIC_PI / 2 - upright + 0.01), far * sin(STIC_PI / 2 - upright + 0.01));
   g->scene.holding_point[1] = -SLIVER_A * l;
   rig_surface(g, 0, 0, 90, 1000, 500); /* never slips */
   rig_pose(g, 0, 0, u0);
@@ -342,8 +342,8 @@ static void snap_fold(void **state)
 }
 
 /* A side vertex comes down where the sliver has turned a right angle, less its half width 0.01. */
-#define TOUCH_BELOW(upright) ((upright)-PI / 2 + 0.01)
-#define TOUCH_ABOVE(upright) ((upright) + PI / 2 - 0.01)
+#define TOUCH_BELOW(upright) ((upright)-STIC_PI / 2 + 0.01)
+#define TOUCH_ABOVE(upright) ((upright) + STIC_PI / 2 - 0.01)
 
 /* Three roots below the fold, one above: which one is taken depends on where the object comes from. */
 static void kepler_roots(void **state)
@@ -402,7 +402,7 @@ static void ladder_limit(void **state)
 {
   static const double mus[][3] = {{0.3, 0.4, 0.5}, {0.6, 0.2, 0.5}, {0.2, 0.1, 0.3}, {0.25, 0, 0.7}};
   (void)state;
-  CLOSE(atan((0.5 * 1.12 - 0.12) / 0.3) * 180 / PI, 55.7131, 1e-4);
+  CLOSE(atan((0.5 * 1.12 - 0.12) / 0.3) * 180 / STIC_PI, 55.7131, 1e-4);
   FOR_EACH_VARIANT(w)
   for (size_t k = 0; k < sizeof mus / sizeof mus[0]; k++)
     for (int over = -1; over <= 1; over += 2) {
@@ -888,7 +888,7 @@ static void many_turns(void **state)
     CLOSE(g.r.hand_theta, phi, 1e-9);
     CLOSE(g.r.theta, g.r.hand_theta, 0);
     /* Press it down there, at 2864 turns and the rest: the same as without the turns, up to the ulp of theta. */
-    double turns = 2 * PI * round(phi / (2 * PI));
+    double turns = 2 * STIC_PI * round(phi / (2 * STIC_PI));
     rig_to(&g, 0, 0.2, turns);
     rig_to(&g, 0, 0.03, turns);
     CLOSE(g.r.theta - turns, 0, 1e-10);

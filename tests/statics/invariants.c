@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "angle.h"
 #include "inside.h"
 #include "statics/core.h"
 #include "invariants/checker.h"
@@ -245,7 +246,7 @@ static void image_scene(const image *g, const stic_scene *from, stic_scene *to)
   for (int i = 0; i < from->surface_count; i++) {
     double deg = from->surfaces[i].normal_deg;
     image_point(g, from->surfaces[i].point, to->surfaces[i].point);
-    to->surfaces[i].normal_deg = (g->mirror ? 180 - deg : deg) + g->turn * 180 / 3.14159265358979323846;
+    to->surfaces[i].normal_deg = (g->mirror ? 180 - deg : deg) + g->turn * 180 / STIC_PI;
   }
   double at[2] = {from->x, from->y}, there[2];
   image_point(g, at, there);

@@ -7,9 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "angle.h"
 #include "stiction.h"
-
-#define PI 3.14159265358979323846
 
 typedef struct rig {
   stic_scene scene;

@@ -2,6 +2,7 @@
  * says, and that the log is the expected one. */
 #include "golden.h"
 
+#include "../../src/angle.h"
 #include "../../src/io/log_csv.h"
 
 #include <math.h>
@@ -10,7 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define DEGREE (3.14159265358979323846 / 180)
 #define KEPT 4 /* contacts */
 
 /* A row without the contacts that no trace here has. */
@@ -205,7 +205,7 @@ static stic_sample between(const stic_golden_trace *trace, size_t k, int64_t t_n
 {
   const stic_sample *a = &trace->samples[k], *b = a + 1;
   const double part = (double)(t_ns - a->t_ns) / (double)(b->t_ns - a->t_ns);
-  const double turn = remainder(hand_angle(b) - hand_angle(a), 360 * DEGREE);
+  const double turn = remainder(hand_angle(b) - hand_angle(a), 360 * STIC_RAD_PER_DEG);
   const double angle = hand_angle(a) + part * turn;
   stic_sample s = *a;
 
@@ -355,7 +355,7 @@ static int count_angle_jumps(check *c, stic_state state, int direction)
       continue;
     if (!slipped(b))
       EXPECT(c, fabs(turn) < 1e-12, "t %.3f: turns by %g without a slip", seconds(b), turn);
-    else if (direction * turn > 0.5 * DEGREE)
+    else if (direction * turn > 0.5 * STIC_RAD_PER_DEG)
       jumps++;
   }
   return jumps;
@@ -437,8 +437,8 @@ static void check_ccw_turn(check *c)
       EXPECT(c, c->rows[i].head.theta > c->rows[i - 1].head.theta - 1e-12, "t %.3f: turns clockwise",
              seconds(&c->rows[i]));
   }
-  printf("%d jumps, %.1f degrees in all\n", jumps, (last(c)->head.theta - first) / DEGREE);
-  EXPECT(c, jumps >= 5 && last(c)->head.theta - first > 25 * DEGREE, "it does not turn far enough");
+  printf("%d jumps, %.1f degrees in all\n", jumps, (last(c)->head.theta - first) / STIC_RAD_PER_DEG);
+  EXPECT(c, jumps >= 5 && last(c)->head.theta - first > 25 * STIC_RAD_PER_DEG, "it does not turn far enough");
 }
 
 static bool same_pose(const row *a, const row *b)
@@ -466,7 +466,7 @@ static void check_carry(check *c)
       EXPECT(c, same_pose(a, b) && b->head.force_x == 0, "t %.3f: moves when it is let go", seconds(b));
   }
   EXPECT(c, highest > 0.1, "not lifted");
-  EXPECT(c, fabs(last(c)->head.theta - 90 * DEGREE) < 1e-12 && last(c)->head.state == STIC_RELEASED,
+  EXPECT(c, fabs(last(c)->head.theta - 90 * STIC_RAD_PER_DEG) < 1e-12 && last(c)->head.state == STIC_RELEASED,
          "does not stand");
 }
 
@@ -501,8 +501,8 @@ static void check_corner(check *c)
       EXPECT(c, r->contacts[k].vertex == 0 && hypot(r->contacts[k].x, r->contacts[k].y) < 1e-13,
              "t %.3f: vertex %d is not in the corner", seconds(r), r->contacts[k].vertex);
   }
-  printf("rocks by %.1f degrees in the corner\n", (most - least) / DEGREE);
-  EXPECT(c, most - least > 20 * DEGREE, "rocks too little");
+  printf("rocks by %.1f degrees in the corner\n", (most - least) / STIC_RAD_PER_DEG);
+  EXPECT(c, most - least > 20 * STIC_RAD_PER_DEG, "rocks too little");
 }
 
 static void check_wedge(check *c)
@@ -554,7 +554,8 @@ static void check_slope(check *c)
     const row *r = &c->rows[i];
 
     if (r->head.state == STIC_EDGE && r->contacts[0].surface == 1)
-      EXPECT(c, fabs(r->head.theta - 25 * DEGREE) < 1e-12, "t %.3f: not flat on the slope", seconds(r));
+      EXPECT(c, fabs(r->head.theta - 25 * STIC_RAD_PER_DEG) < 1e-12, "t %.3f: not flat on the slope",
+             seconds(r));
   }
 }
 
@@ -570,9 +571,9 @@ static void check_hexagon(check *c)
       touched |= 1u << r->contacts[k].vertex;
     tips += r->head.state == STIC_VERTEX && c->rows[i - 1].head.state == STIC_EDGE;
   }
-  printf("tips over %d times, %.1f degrees in all\n", tips, last(c)->head.theta / DEGREE);
+  printf("tips over %d times, %.1f degrees in all\n", tips, last(c)->head.theta / STIC_RAD_PER_DEG);
   EXPECT(c, touched == 0x3f, "only some vertices touch: %x", touched);
-  EXPECT(c, tips >= 7 && last(c)->head.theta < -410 * DEGREE, "does not roll once round");
+  EXPECT(c, tips >= 7 && last(c)->head.theta < -410 * STIC_RAD_PER_DEG, "does not roll once round");
 }
 
 static void check_slow_hour(check *c)

@@ -3,6 +3,7 @@
 #include "xvfb.h"
 
 #include "../files/help.h"
+#include "angle.h"
 
 #include <math.h>
 #include <signal.h>
@@ -11,7 +12,6 @@
 #include <string.h>
 
 #define TRIES 3000 /* of 20 ms: a minute, on a loaded machine */
-#define DEGREE 0.017453292519943295
 
 /* The last row of the recording or log that grows on disk: its first `count` numbers; false if there is none. */
 static bool last_numbers(const char *path, double *numbers, int count)
@@ -105,8 +105,8 @@ static void await_angle(double angle)
     }
     stic_test_pause(20);
   }
-  fail_msg("the wheel turned the hand to %g degrees, not to %g", 2 * atan2(row[6], row[7]) / DEGREE,
-           angle / DEGREE);
+  fail_msg("the wheel turned the hand to %g degrees, not to %g", 2 * atan2(row[6], row[7]) / STIC_RAD_PER_DEG,
+           angle / STIC_RAD_PER_DEG);
 }
 
 /* Waits until it has moved away from the user and is let go or still pressed, as given. */
@@ -145,9 +145,9 @@ static void use_mouse(stic_xvfb *x)
   drag(x, at, to);
   for (int i = 0; i < 5; i++)
     turn_wheel(x, 4, NULL);
-  await_angle(10 * DEGREE);
+  await_angle(10 * STIC_RAD_PER_DEG);
   turn_wheel(x, 5, "Shift_L");
-  await_angle(9.75 * DEGREE);
+  await_angle(9.75 * STIC_RAD_PER_DEG);
   turn_wheel(x, 4, "Control_L");
   await_away(true);
   stic_xvfb_button(x, 1, false);

@@ -1,8 +1,9 @@
 #include "motion.h"
 
+#include "../../src/angle.h"
+
 #include <math.h>
 
-#define PI 3.14159265358979323846
 #define MM_PER_COUNT 0.0254
 #define DEGREES_PER_COUNT 0.1
 
@@ -85,10 +86,10 @@ void stic_tremor_start(stic_tremor *tremor, double hz, stic_random *random)
 {
   static const double frequency[STIC_AXES] = {9.4, 10.3, 8.6, 11.2};
   const double width = 2.0; /* Hz */
-  const double r = 1 - PI * width / hz;
+  const double r = 1 - STIC_PI * width / hz;
 
   for (int i = 0; i < STIC_AXES; i++) {
-    const double a1 = 2 * r * cosine(2 * PI * frequency[i] / hz), a2 = -r * r;
+    const double a1 = 2 * r * cosine(2 * STIC_PI * frequency[i] / hz), a2 = -r * r;
 
     tremor->a1[i] = a1;
     tremor->a2[i] = a2;
@@ -132,7 +133,7 @@ void stic_half_angle(int64_t counts, double *s, double *c)
   /* Half an angle comes round after 7200 counts; an eighth of that is 90 degrees of angle, 45 of half. */
   const int64_t turn = (counts % 7200 + 7200) % 7200;
   const int64_t quarter = (turn + 900) / 1800; /* whole quarter turns of the half angle */
-  const double rest = (double)(turn - quarter * 1800) * (PI / 3600);
+  const double rest = (double)(turn - quarter * 1800) * (STIC_PI / 3600);
   const double a = sine(rest), b = cosine(rest);
 
   switch (quarter % 4) {
