@@ -27,17 +27,19 @@ static void print_data(FILE *script, const stic_heat_map *map, int index)
   fprintf(script, "EOD\n");
 }
 
-/* The least step between two values of an axis: the size of a cell. */
+/* The least step between two values of an axis: the size of a cell, also where a quick run leaves cases out. */
 static double cell(const stic_heat_map *map, bool of_a)
 {
   double least = INFINITY;
 
   for (int i = 1; i < map->count; i++) {
-    const stic_heat_point *p = &map->points[i], *q = p - 1;
-    const double step = fabs(exponent_of(of_a ? p->a : p->b) - exponent_of(of_a ? q->a : q->b));
+    for (int j = 0; j < i; j++) {
+      const stic_heat_point *p = &map->points[i], *q = &map->points[j];
+      const double step = fabs(exponent_of(of_a ? p->a : p->b) - exponent_of(of_a ? q->a : q->b));
 
-    if (step > 1e-9)
-      least = fmin(least, step);
+      if (step > 1e-9)
+        least = fmin(least, step);
+    }
   }
   return isfinite(least) ? least : 1;
 }
