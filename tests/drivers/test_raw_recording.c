@@ -8,16 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct wrong {
-  const char *text;
-  int line;
-  const char *words;
-} wrong;
-
 #define SERIAL STIC_RAW_FORMAT "\n"
 #define HID "D: 0\nR: 3 05 01 c0\nN: puck\nP: usb-1\nI: 3 046d c626\n"
 
-static const wrong cases[] = {
+static const stic_test_wrong wrong[] = {
   {"", 0, "no records; expected '# stiction-serial 1'"},
   {"# other\n", 1, "no records"},
   {SERIAL, 1, "no records"},
@@ -61,25 +55,23 @@ static stic_raw_status read_all(stic_raw_reader *reader, int *count, stic_raw_re
   return status;
 }
 
+static stic_status read_raw(const char *path, stic_error *err)
+{
+  stic_raw_reader *reader;
+  stic_raw_record record;
+  stic_raw_status status;
+  int count;
+
+  assert_int_equal(stic_raw_open(path, &reader, err), STIC_OK);
+  status = read_all(reader, &count, &record, err);
+  stic_raw_close(reader);
+  return status == STIC_RAW_BAD ? err->status : STIC_OK;
+}
+
 static void test_wrong(void **state)
 {
   (void)state;
-  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    const char *path = stic_test_write("raw", cases[i].text);
-    stic_raw_reader *reader;
-    stic_raw_record record;
-    stic_error err;
-    int count;
-
-    assert_int_equal(stic_raw_open(path, &reader, &err), STIC_OK);
-    assert_int_equal(read_all(reader, &count, &record, &err), STIC_RAW_BAD);
-    assert_int_equal(err.status, STIC_BAD_INPUT);
-    assert_string_equal(err.file, path);
-    if (err.line != cases[i].line)
-      fail_msg("case %d: line %d", (int)i, (int)err.line);
-    stic_test_contains(err.message, cases[i].words);
-    stic_raw_close(reader);
-  }
+  stic_test_wrong_files(wrong, sizeof wrong / sizeof wrong[0], read_raw);
 }
 
 static void test_long(void **state)

@@ -8,13 +8,7 @@
 
 #define HEAD "stiction: 1\ntracker:\n"
 
-typedef struct wrong {
-  const char *text;
-  int line;
-  const char *words;
-} wrong;
-
-static const wrong cases[] = {
+static const stic_test_wrong wrong[] = {
   {"", 1, "no tracker section"},
   {"stiction: 1\n", 1, "no tracker section; expected tracker:"},
   {"tracker: {}\n", 1, "stiction is missing"},
@@ -45,21 +39,19 @@ static const wrong cases[] = {
   {HEAD "  rate: {dead_zone: [0, -1]}\n", 3, "'-1'"},
 };
 
+static stic_status read_tracker(const char *path, stic_error *err)
+{
+  stic_tracker_settings settings;
+  const stic_status status = stic_tracker_read(path, NULL, true, &settings, err);
+
+  assert_true(settings.frame.scale == 1);
+  return status;
+}
+
 static void test_wrong(void **state)
 {
   (void)state;
-  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    const char *path = stic_test_write("tracker.yaml", cases[i].text);
-    stic_tracker_settings settings;
-    stic_error err;
-
-    assert_int_equal(stic_tracker_read(path, NULL, true, &settings, &err), STIC_BAD_INPUT);
-    assert_string_equal(err.file, path);
-    if (err.line != cases[i].line)
-      fail_msg("case %d: line %d, %s", (int)i, (int)err.line, err.message);
-    stic_test_contains(err.message, cases[i].words);
-    assert_true(settings.frame.scale == 1);
-  }
+  stic_test_wrong_files(wrong, sizeof wrong / sizeof wrong[0], read_tracker);
 }
 
 static void test_absent(void **state)

@@ -234,3 +234,23 @@ void stic_test_contains(const char *text, const char *part)
   if (!strstr(text, part))
     fail_msg("expected \"%s\" in \"%s\"", part, text);
 }
+
+void stic_test_refused(stic_status status, const stic_error *err, const char *path, int line,
+                       const char *words)
+{
+  if (status != STIC_BAD_INPUT || err->status != status || strcmp(err->file, path) != 0 ||
+      err->line != line || !strstr(err->message, words))
+    fail_msg("expected line %d, \"%s\"; found status %d, line %d, \"%s\" of %s", line, words, (int)status,
+             (int)err->line, err->message, err->file);
+}
+
+void stic_test_wrong_files(const stic_test_wrong *files, size_t count, stic_test_reader *read)
+{
+  for (size_t i = 0; i < count; i++) {
+    const char *path = stic_test_write("wrong", files[i].text);
+    stic_error err = {.message = ""};
+    const stic_status status = read(path, &err);
+
+    stic_test_refused(status, &err, path, files[i].line, files[i].words);
+  }
+}

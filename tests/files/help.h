@@ -12,6 +12,8 @@
 #include <stdbool.h>
 #include <sys/types.h>
 
+#include "stiction.h"
+
 /* A scene that is right, in lines 1 to 10. */
 extern const char stic_test_scene[];
 
@@ -59,5 +61,20 @@ int stic_test_wait(pid_t child);
 
 /* Fails unless `text` contains `part`, and shows both. */
 void stic_test_contains(const char *text, const char *part);
+
+/* A file that is wrong, the line of which this is said (0: of none), and words that are said. */
+typedef struct stic_test_wrong {
+  const char *text;
+  int line;
+  const char *words;
+} stic_test_wrong;
+
+/* Fails unless the reader's answer is what is expected of the file at `path`. */
+void stic_test_refused(stic_status status, const stic_error *err, const char *path, int line,
+                       const char *words);
+
+/* ... of each as a file of its own. */
+typedef stic_status stic_test_reader(const char *path, stic_error *err);
+void stic_test_wrong_files(const stic_test_wrong *files, size_t count, stic_test_reader *read);
 
 #endif

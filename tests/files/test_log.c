@@ -85,13 +85,23 @@ static void test_round_trip(void **state)
   stic_log_close(reader);
 }
 
+static stic_status read_first_row(const char *path, stic_error *err)
+{
+  stic_log_reader *reader;
+  stic_result r;
+  bool more;
+  stic_status status = stic_log_open(path, &reader, err);
+
+  if (status != STIC_OK)
+    return status;
+  status = stic_log_next(reader, &r, &more, err);
+  stic_log_close(reader);
+  return status;
+}
+
 static void test_wrong_logs(void **state)
 {
-  static const struct {
-    const char *text;
-    int line;
-    const char *words;
-  } cases[] = {
+  static const stic_test_wrong wrong[] = {
     {"", 0, "the first line is ''"},
     {"t,state\n", 1, "expected '# stiction-log 1'"},
     {"# stiction-log 2\n", 1, "format version 2; expected 1"},
@@ -107,21 +117,7 @@ static void test_wrong_logs(void **state)
   };
 
   (void)state;
-  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    stic_log_reader *reader;
-    stic_result r;
-    stic_error err;
-    bool more;
-    stic_status status = stic_log_open(stic_test_write("log.csv", cases[i].text), &reader, &err);
-
-    if (status == STIC_OK) {
-      status = stic_log_next(reader, &r, &more, &err);
-      stic_log_close(reader);
-    }
-    assert_int_equal(status, STIC_BAD_INPUT);
-    if (err.line != cases[i].line || !strstr(err.message, cases[i].words))
-      fail_msg("case %d: found line %d, \"%s\"", (int)i, (int)err.line, err.message);
-  }
+  stic_test_wrong_files(wrong, sizeof wrong / sizeof wrong[0], read_first_row);
 }
 
 static void test_events(void **state)

@@ -13,13 +13,7 @@
 #define HEADER "t,x,y,z,qx,qy,qz,qw,buttons\n"
 #define GOOD ",0,0,0,0,0,0,1,0\n"
 
-typedef struct wrong {
-  const char *text;
-  int line;
-  const char *words;
-} wrong;
-
-static const wrong cases[] = {
+static const stic_test_wrong wrong[] = {
   {"", 0, "the trace is empty"},
   {"0" GOOD, 1, "the first line is '0,0,0,0,0,0,0,1,0'; expected '# stiction-trace 1'"},
   {"# stiction-trace 2\n0" GOOD, 1, "format version 2; expected 1"},
@@ -69,21 +63,18 @@ static stic_trace_status read_all(const char *path, const stic_trace_options *op
   return status;
 }
 
+static stic_status read_trace(const char *path, stic_error *err)
+{
+  stic_sample sample;
+  int count;
+
+  return read_all(path, NULL, &count, &sample, err) == STIC_TRACE_BAD ? err->status : STIC_OK;
+}
+
 static void test_wrong_traces(void **state)
 {
   (void)state;
-  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    const char *path = stic_test_write("t.csv", cases[i].text);
-    stic_sample sample;
-    stic_error err;
-    int count;
-
-    if (read_all(path, NULL, &count, &sample, &err) != STIC_TRACE_BAD)
-      fail_msg("case %d was read", (int)i);
-    if (err.status != STIC_BAD_INPUT || err.line != cases[i].line || !strstr(err.message, cases[i].words))
-      fail_msg("case %d: expected line %d, \"%s\"; found line %d, \"%s\"", (int)i, cases[i].line,
-               cases[i].words, (int)err.line, err.message);
-  }
+  stic_test_wrong_files(wrong, sizeof wrong / sizeof wrong[0], read_trace);
 }
 
 static void test_tolerated(void **state)
