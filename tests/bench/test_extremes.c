@@ -5,13 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void expect(const stic_test_run *run, int code, const char *words)
-{
-  if (run->code != code)
-    fail_msg("exit code %d, not %d: %s", run->code, code, run->err);
-  stic_test_contains(run->err, words);
-}
-
 static int lines_in(const char *path)
 {
   char *text = stic_test_read(path);

@@ -26,13 +26,6 @@ static int set_up(void **state)
   return 0;
 }
 
-static void expect(const stic_test_run *run, int code, const char *words)
-{
-  if (run->code != code)
-    fail_msg("exit code %d, not %d: %s", run->code, code, run->err);
-  stic_test_contains(run->err, words);
-}
-
 /* What was written; it also passes `check`. */
 static int read_trace(stic_sample *samples)
 {

@@ -235,6 +235,13 @@ void stic_test_contains(const char *text, const char *part)
     fail_msg("expected \"%s\" in \"%s\"", part, text);
 }
 
+void expect(const stic_test_run *run, int code, const char *words)
+{
+  if (run->code != code)
+    fail_msg("exit code %d, not %d: %s", run->code, code, run->err);
+  stic_test_contains(run->err, words);
+}
+
 void stic_test_refused(stic_status status, const stic_error *err, const char *path, int line,
                        const char *words)
 {

@@ -53,6 +53,8 @@ typedef struct stic_test_run {
   char err[65536]; /* standard error */
 } stic_test_run;
 const stic_test_run *stic_test_program(const char *first, ...);
+/* Fails unless it ended with that code and its standard error contains `words`. A short name, for what is said most. */
+void expect(const stic_test_run *run, int code, const char *words);
 
 /* Starts it with standard output and error to files "out" and "err", standard input from `input` (NULL:
  * empty), and does not wait. */

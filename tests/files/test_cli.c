@@ -30,13 +30,6 @@ static int set_up(void **state)
   return 0;
 }
 
-static void expect(const stic_test_run *run, int code, const char *words)
-{
-  if (run->code != code)
-    fail_msg("exit code %d, not %d: %s", run->code, code, run->err);
-  stic_test_contains(run->err, words);
-}
-
 static void test_help(void **state)
 {
   static const char *const commands[] = {"replay", "run", "check", "bench"};

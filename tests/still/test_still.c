@@ -44,13 +44,6 @@ static int set_up(void **state)
   return 0;
 }
 
-static void expect(const stic_test_run *run, int code, const char *words)
-{
-  if (run->code != code)
-    fail_msg("exit code %d, not %d: %s", run->code, code, run->err);
-  stic_test_contains(run->err, words);
-}
-
 static void expect_absent(const char *path)
 {
   assert_int_equal(access(path, F_OK), -1);
