@@ -40,148 +40,217 @@ bool stic_same_contact(const stic_contact *a, const stic_contact *b)
   return a->vertex == b->vertex && a->surface == b->surface;
 }
 
-void stic_checker_row(stic_checker *k, const stic_result *r, const stic_event *events, int event_count,
-                      bool may_slide)
+/* A row being checked, and what is needed of it often. */
+typedef struct row {
+  const stic_result *r;
+  double cosine, sine;
+  double rounding; /* m: of a place */
+  double eps;      /* m: how far off a place may be */
+} row;
+
+static bool judged(const stic_result *r)
 {
+  return r->state != STIC_RELEASED && !(r->flags & (STIC_FLAG_NO_ANSWER | STIC_FLAG_LIMIT));
+}
+
+static bool is_finite(const stic_result *r)
+{
+  return isfinite(r->x) && isfinite(r->y) && isfinite(r->theta) && isfinite(r->force_x) &&
+         isfinite(r->force_y) && isfinite(r->moment) && isfinite(r->residual) && r->contact_count >= 0 &&
+         r->contact_count <= STIC_CONTACTS_MAX;
+}
+
+/* From `from` to vertex `v`. */
+static void vertex_from(const stic_checker *k, const row *w, int v, const double from[2], double out[2])
+{
+  const double *b = k->scene->vertices[v];
+  out[0] = w->r->x + w->cosine * b[0] - w->sine * b[1] - from[0];
+  out[1] = w->r->y + w->sine * b[0] + w->cosine * b[1] - from[1];
+}
+
+/* 1. No vertex below a surface. */
+static void check_depths(stic_checker *k, const row *w)
+{
+  const stic_result *r = w->r;
   const stic_scene *s = k->scene;
-  double c = cos(r->theta), si = sin(r->theta), k_p = s->stiffness, rounding = stic_checker_rounding(k, r);
-  if (!k->first && r->x == k->last.x && r->y == k->last.y && r->theta == k->last.theta)
-    rounding = largest_of(rounding, k->last_rounding);
-  double eps = 4096 * k->ulp * k->size + rounding;
-  k->rows++;
-  if (r->flags & (STIC_FLAG_NO_ANSWER | STIC_FLAG_LIMIT))
-    k->flagged++;
-  if (!isfinite(r->x) || !isfinite(r->y) || !isfinite(r->theta) || !isfinite(r->force_x) ||
-      !isfinite(r->force_y) || !isfinite(r->moment) || !isfinite(r->residual) || r->contact_count < 0 ||
-      r->contact_count > STIC_CONTACTS_MAX) {
-    COMPLAIN("not finite");
-    return;
-  }
-  /* 1. No vertex below a surface. */
   for (int i = 0; i < s->surface_count; i++) {
-    double n[2];
+    double n[2], at[2];
     stic_normal_from_degrees(s->surfaces[i].normal_deg, n);
     for (int v = 0; v < s->vertex_count; v++) {
-      const double *b = s->vertices[v], *p = s->surfaces[i].point;
-      double x = r->x + c * b[0] - si * b[1] - p[0], y = r->y + si * b[0] + c * b[1] - p[1],
-             depth = -(x * n[0] + y * n[1]);
-      double deep = eps; /* contacts are told from gaps to 1e-12 size */
+      vertex_from(k, w, v, s->surfaces[i].point, at);
+      double depth = -(at[0] * n[0] + at[1] * n[1]);
+      double deep = w->eps; /* contacts are told from gaps to 1e-12 size */
       for (int q = 0; q < r->contact_count; q++)
         if (r->contacts[q].vertex == v && r->contacts[q].surface == i)
-          deep = eps + 1e-12 * k->size;
+          deep = w->eps + 1e-12 * k->size;
       k->worst_depth = largest_of(k->worst_depth, depth / deep);
       if (!(depth <= deep))
         COMPLAIN("1: vertex %d is %.3g below surface %d, allowed %.3g (size %.3g)", v, depth, i, deep,
                  k->size);
     }
   }
-  if (r->state == STIC_RELEASED) {
-    if (r->force_x != 0 || r->force_y != 0 || r->moment != 0)
-      COMPLAIN("released, but the spring pulls");
+}
+
+/* Sum of spring and contacts about the holding point, and the largest terms in it. */
+typedef struct load {
+  double fx, fy, moment, largest, reach;
+} load;
+
+/* 3. A contact's force is inside its cone. False if there is no such contact. */
+static bool check_contact(stic_checker *k, const row *w, int i, load *sum)
+{
+  const stic_scene *s = k->scene;
+  const stic_result *r = w->r;
+  const stic_contact *q = &r->contacts[i];
+  double n[2], off[2];
+  if (q->vertex < 0 || q->vertex >= s->vertex_count || q->surface < 0 || q->surface >= s->surface_count) {
+    COMPLAIN("contact of vertex %d and surface %d", q->vertex, q->surface);
+    return false;
   }
-  /* 2, 3. Forces inside the cones, in balance about the holding point. */
-  double fx = r->force_x, fy = r->force_y, moment = r->moment, largest = k_p * k->size, reach = k->size;
-  largest = largest_of(largest, largest_of(hypot(fx, fy), fabs(moment) / k->size));
-  for (int i = 0; i < r->contact_count; i++) {
-    const stic_contact *q = &r->contacts[i];
-    double n[2], mu;
-    if (q->vertex < 0 || q->vertex >= s->vertex_count || q->surface < 0 || q->surface >= s->surface_count) {
-      COMPLAIN("contact of vertex %d and surface %d", q->vertex, q->surface);
-      return;
-    }
-    mu = s->surfaces[q->surface].friction.mu_static;
-    stic_normal_from_degrees(s->surfaces[q->surface].normal_deg, n);
-    k->contacts++;
-    if (!(q->normal >= 0))
-      COMPLAIN("3: N = %g at vertex %d", q->normal, q->vertex);
-    /* N and T are components of one rounded force */
-    double rounded = 16 * largest_of(k->ulp, DBL_EPSILON) * (1 + mu) * (q->normal + fabs(q->friction));
-    if (!(fabs(q->friction) <= mu * q->normal + rounded))
-      COMPLAIN("3: |T| = %.17g, mu_s N = %.17g at vertex %d", fabs(q->friction), mu * q->normal, q->vertex);
-    double x = n[0] * q->normal + n[1] * q->friction, y = n[1] * q->normal - n[0] * q->friction;
-    double arm_x = q->x - r->holding_x, arm_y = q->y - r->holding_y;
-    fx += x, fy += y, moment += arm_x * y - arm_y * x;
-    largest = largest_of(largest, hypot(x, y));
-    reach = largest_of(reach, hypot(arm_x, arm_y));
-    /* The vertex is where its anchor is. */
-    const double *b = s->vertices[q->vertex];
-    double off = hypot(r->x + c * b[0] - si * b[1] - q->x, r->y + si * b[0] + c * b[1] - q->y);
-    double near = eps + 1e-12 * k->size; /* a touch at the end of a slide counts from 1e-12 size on */
-    k->worst_anchor = largest_of(k->worst_anchor, off / near);
-    if (!(off <= near))
-      COMPLAIN("vertex %d is %.3g from its anchor, allowed %.3g (size %.3g)", q->vertex, off, near, k->size);
-    if (i && (q[-1].vertex > q->vertex || (q[-1].vertex == q->vertex && q[-1].surface >= q->surface)))
-      COMPLAIN("contacts out of order");
-  }
-  bool judged = r->state != STIC_RELEASED && !(r->flags & (STIC_FLAG_NO_ANSWER | STIC_FLAG_LIMIT));
-  if (judged) {
-    /* A place wrong by its rounding is a force wrong by k_p times that; JUDGE itself looks to 1e-12 k_p size. */
-    double allowed =
-      largest_of(4096 * k->ulp, 16 * DBL_EPSILON) * largest + k_p * rounding + 1e-12 * k_p * k->size;
-    double off = hypot(fx, fy), off_moment = fabs(moment) / largest_of(k->size, reach);
-    /* The arm's rounding times the force, and the angle's times k_theta. */
-    double angle = 8 * largest_of(k->ulp, DBL_EPSILON) * (fabs(r->theta) + fabs(r->hand_theta));
-    double allowed_moment =
-      allowed + largest * rounding / k->size + s->rotational_stiffness * angle / k->size;
-    if (r->state == STIC_FREE && s->rotational_stiffness == 0)
-      off_moment = 0;
-    k->worst_relative_residual =
-      largest_of(k->worst_relative_residual, largest_of(off, off_moment) / largest);
-    k->worst_residual = largest_of(k->worst_residual, largest_of(off / allowed, off_moment / allowed_moment));
-    if (!(off <= allowed))
-      COMPLAIN("2: force residual %.3g, allowed %.3g (largest %.3g)", off, allowed, largest);
-    if (!(off_moment <= allowed_moment))
-      COMPLAIN("2: moment residual %.3g, allowed %.3g (largest %.3g)", off_moment, allowed_moment, largest);
-    if (!(r->residual <= (4096 * k->ulp + 2e-12 + allowed_moment / largest) * reach / k->size))
-      COMPLAIN("2: the row says a residual of %.3g", r->residual);
-  }
-  /* 4. A stuck anchor does not move by a bit. */
-  for (int i = 0; !k->first && i < r->contact_count; i++)
+  double mu = s->surfaces[q->surface].friction.mu_static;
+  stic_normal_from_degrees(s->surfaces[q->surface].normal_deg, n);
+  k->contacts++;
+  if (!(q->normal >= 0))
+    COMPLAIN("3: N = %g at vertex %d", q->normal, q->vertex);
+  /* N and T are components of one rounded force */
+  double rounded = 16 * largest_of(k->ulp, DBL_EPSILON) * (1 + mu) * (q->normal + fabs(q->friction));
+  if (!(fabs(q->friction) <= mu * q->normal + rounded))
+    COMPLAIN("3: |T| = %.17g, mu_s N = %.17g at vertex %d", fabs(q->friction), mu * q->normal, q->vertex);
+  double x = n[0] * q->normal + n[1] * q->friction, y = n[1] * q->normal - n[0] * q->friction;
+  double arm_x = q->x - r->holding_x, arm_y = q->y - r->holding_y;
+  sum->fx += x, sum->fy += y, sum->moment += arm_x * y - arm_y * x;
+  sum->largest = largest_of(sum->largest, hypot(x, y));
+  sum->reach = largest_of(sum->reach, hypot(arm_x, arm_y));
+  /* The vertex is where its anchor is. */
+  vertex_from(k, w, q->vertex, (const double[2]){q->x, q->y}, off);
+  double distance = hypot(off[0], off[1]);
+  double near = w->eps + 1e-12 * k->size; /* a touch at the end of a slide counts from 1e-12 size on */
+  k->worst_anchor = largest_of(k->worst_anchor, distance / near);
+  if (!(distance <= near))
+    COMPLAIN("vertex %d is %.3g from its anchor, allowed %.3g (size %.3g)", q->vertex, distance, near,
+             k->size);
+  if (i && (q[-1].vertex > q->vertex || (q[-1].vertex == q->vertex && q[-1].surface >= q->surface)))
+    COMPLAIN("contacts out of order");
+  return true;
+}
+
+/* 2. Forces and moments balance. A place wrong by its rounding is a force wrong by k_p times that; JUDGE itself looks
+ * to 1e-12 k_p size. */
+static void check_balance(stic_checker *k, const row *w, const load *sum)
+{
+  const stic_result *r = w->r;
+  const double k_p = k->scene->stiffness, k_theta = k->scene->rotational_stiffness, largest = sum->largest;
+  double allowed =
+    largest_of(4096 * k->ulp, 16 * DBL_EPSILON) * largest + k_p * w->rounding + 1e-12 * k_p * k->size;
+  double off = hypot(sum->fx, sum->fy), off_moment = fabs(sum->moment) / largest_of(k->size, sum->reach);
+  /* The arm's rounding times the force, and the angle's times k_theta. */
+  double angle = 8 * largest_of(k->ulp, DBL_EPSILON) * (fabs(r->theta) + fabs(r->hand_theta));
+  double allowed_moment = allowed + largest * w->rounding / k->size + k_theta * angle / k->size;
+  if (r->state == STIC_FREE && k_theta == 0)
+    off_moment = 0;
+  k->worst_relative_residual = largest_of(k->worst_relative_residual, largest_of(off, off_moment) / largest);
+  k->worst_residual = largest_of(k->worst_residual, largest_of(off / allowed, off_moment / allowed_moment));
+  if (!(off <= allowed))
+    COMPLAIN("2: force residual %.3g, allowed %.3g (largest %.3g)", off, allowed, largest);
+  if (!(off_moment <= allowed_moment))
+    COMPLAIN("2: moment residual %.3g, allowed %.3g (largest %.3g)", off_moment, allowed_moment, largest);
+  if (!(r->residual <= (4096 * k->ulp + 2e-12 + allowed_moment / largest) * sum->reach / k->size))
+    COMPLAIN("2: the row says a residual of %.3g", r->residual);
+}
+
+/* 2, 3. Forces inside the cones, in balance about the holding point. False if a contact is none. */
+static bool check_forces(stic_checker *k, const row *w)
+{
+  const stic_result *r = w->r;
+  load sum = {r->force_x, r->force_y, r->moment, k->scene->stiffness * k->size, k->size};
+  sum.largest = largest_of(sum.largest, largest_of(hypot(sum.fx, sum.fy), fabs(sum.moment) / k->size));
+  for (int i = 0; i < r->contact_count; i++)
+    if (!check_contact(k, w, i, &sum))
+      return false;
+  if (judged(r))
+    check_balance(k, w, &sum);
+  return true;
+}
+
+/* 4. A stuck anchor does not move by a bit, unless an event says so. A slide below 1e-12 size is none in the model's
+ * count, and no event; f80's are rounded when they are written. Sliding on (mu_s = mu_d) is no choice of JUDGE's and
+ * may end with its own rounding. */
+static void check_moved(stic_checker *k, const stic_contact *now, const stic_contact *then, bool said,
+                        bool may_slide, double rounding)
+{
+  const stic_friction *f = &k->scene->surfaces[now->surface].friction;
+  double slid = hypot(now->x - then->x, now->y - then->y);
+  double written = k->ulp < DBL_EPSILON ? DBL_EPSILON * (fabs(now->x) + fabs(now->y)) : 0;
+  bool slides_on = f->mu_static == f->mu_dynamic;
+  if (said || slid == 0)
+    return;
+  if ((slides_on || may_slide) && slid <= 1e-12 * k->size + (slides_on ? rounding : written))
+    k->tiny_slides++;
+  else
+    COMPLAIN("4: the anchor of vertex %d on surface %d moved by %.3g, %.3g without a slip", now->vertex,
+             now->surface, now->x - then->x, now->y - then->y);
+}
+
+static void check_anchors(stic_checker *k, const row *w, const stic_event *events, int event_count,
+                          bool may_slide)
+{
+  const stic_result *r = w->r;
+  for (int i = 0; i < r->contact_count; i++)
     for (int j = 0; j < k->last.contact_count; j++) {
-      const stic_contact *now = &r->contacts[i], *then = &k->last.contacts[j];
-      const stic_friction *f = &s->surfaces[now->surface].friction;
-      bool moved = now->x != then->x || now->y != then->y, said = false;
-      if (!stic_same_contact(now, then) || !moved)
+      bool said = event_count == STIC_EVENTS_MAX;
+      if (!stic_same_contact(&r->contacts[i], &k->last.contacts[j]))
         continue;
       for (int n = 0; n < event_count && !said; n++)
-        said = events[n].vertex == now->vertex && events[n].kind != STIC_EVENT_SNAP;
-      said |= event_count == STIC_EVENTS_MAX;
-      /* A slide below 1e-12 size is none in the model's count, and no event; f80's are rounded when they are
-       * written. Sliding on (mu_s = mu_d) is no choice of JUDGE's and may end with its own rounding. */
-      double slid = hypot(now->x - then->x, now->y - then->y);
-      double written = k->ulp < DBL_EPSILON ? DBL_EPSILON * (fabs(now->x) + fabs(now->y)) : 0;
-      bool slides_on = f->mu_static == f->mu_dynamic;
-      if (!said && (slides_on || may_slide) && slid <= 1e-12 * k->size + (slides_on ? rounding : written))
-        k->tiny_slides++, said = true;
-      if (!said)
-        COMPLAIN("4: the anchor of vertex %d on surface %d moved by %.3g, %.3g without a slip", now->vertex,
-                 now->surface, now->x - then->x, now->y - then->y);
+        said = events[n].vertex == r->contacts[i].vertex && events[n].kind != STIC_EVENT_SNAP;
+      check_moved(k, &r->contacts[i], &k->last.contacts[j], said, may_slide, w->rounding);
     }
-  /* No answer: the object is where it last was. */
-  if (!k->first && (r->flags & STIC_FLAG_NO_ANSWER) && k->last.state != STIC_RELEASED &&
-      (r->x != k->last.x || r->y != k->last.y || r->theta != k->last.theta ||
-       r->contact_count != k->last.contact_count))
+}
+
+/* 7. What must not move since the last row: all of it, or beyond rounding. */
+static void check_rest(stic_checker *k, const row *w)
+{
+  const stic_result *r = w->r;
+  const stic_result *last = &k->last;
+  const bool moved =
+    r->x != last->x || r->y != last->y || r->theta != last->theta || r->contact_count != last->contact_count;
+  const bool hand_stands =
+    r->hand_x == last->hand_x && r->hand_y == last->hand_y && r->hand_theta == last->hand_theta;
+  const double off = hypot(r->x - last->x, r->y - last->y) + k->size * fabs(r->theta - last->theta);
+  if ((r->flags & STIC_FLAG_NO_ANSWER) && last->state != STIC_RELEASED && moved)
     COMPLAIN("no answer, but moved");
-  /* 7. Released, nothing moves. */
-  if (!k->first && r->state == STIC_RELEASED &&
-      (r->x != k->last.x || r->y != k->last.y || r->theta != k->last.theta ||
-       r->contact_count != k->last.contact_count))
+  if (r->state == STIC_RELEASED && moved)
     COMPLAIN("7: moved while released");
-  /* The hand stands still: nothing moves beyond rounding. */
-  if (!k->first && judged && k->last.state != STIC_RELEASED && r->hand_x == k->last.hand_x &&
-      r->hand_y == k->last.hand_y && r->hand_theta == k->last.hand_theta &&
-      !(k->last.flags & (STIC_FLAG_NO_ANSWER | STIC_FLAG_LIMIT))) {
-    double off = hypot(r->x - k->last.x, r->y - k->last.y) + k->size * fabs(r->theta - k->last.theta);
-    if (!(off <= eps))
-      COMPLAIN("7: moved by %.3g under a hand that stands still", off);
+  if (judged(r) && judged(last) && hand_stands && !(off <= w->eps))
+    COMPLAIN("7: moved by %.3g under a hand that stands still", off);
+  /* Taken again: the spring starts slack. */
+  if (r->state != STIC_RELEASED && last->state == STIC_RELEASED && !(off <= w->eps))
+    COMPLAIN("7: moved by %.3g when taken", off);
+}
+
+void stic_checker_row(stic_checker *k, const stic_result *r, const stic_event *events, int event_count,
+                      bool may_slide)
+{
+  row w = {r, cos(r->theta), sin(r->theta), stic_checker_rounding(k, r), 0};
+  if (!k->first && r->x == k->last.x && r->y == k->last.y && r->theta == k->last.theta)
+    w.rounding = largest_of(w.rounding, k->last_rounding);
+  w.eps = 4096 * k->ulp * k->size + w.rounding;
+  k->rows++;
+  if (r->flags & (STIC_FLAG_NO_ANSWER | STIC_FLAG_LIMIT))
+    k->flagged++;
+  if (!is_finite(r)) {
+    COMPLAIN("not finite");
+    return;
   }
-  /* Taken again: the spring starts slack, so nothing moves either. */
-  if (!k->first && r->state != STIC_RELEASED && k->last.state == STIC_RELEASED) {
-    double off = hypot(r->x - k->last.x, r->y - k->last.y) + k->size * fabs(r->theta - k->last.theta);
-    if (!(off <= eps))
-      COMPLAIN("7: moved by %.3g when taken", off);
+  check_depths(k, &w);
+  if (r->state == STIC_RELEASED && (r->force_x != 0 || r->force_y != 0 || r->moment != 0))
+    COMPLAIN("released, but the spring pulls");
+  if (!check_forces(k, &w))
+    return;
+  if (!k->first) {
+    check_anchors(k, &w, events, event_count, may_slide);
+    check_rest(k, &w);
   }
   k->last = *r;
-  k->last_rounding = rounding;
+  k->last_rounding = w.rounding;
   k->first = false;
 }
