@@ -60,6 +60,28 @@ typedef struct random_case {
   int kind;
 } random_case;
 
+/* Moves the object out of every surface. */
+static inline void random_free_start(stic_scene *s)
+{
+  for (int k = 0; k < 200; k++) {
+    double worst = 1e9, n[2] = {0, 0};
+    for (int i = 0; i < s->surface_count; i++) {
+      double m[2];
+      stic_normal_from_degrees(s->surfaces[i].normal_deg, m);
+      for (int v = 0; v < s->vertex_count; v++) {
+        double px = s->x + cos(s->angle) * s->vertices[v][0] - sin(s->angle) * s->vertices[v][1];
+        double py = s->y + sin(s->angle) * s->vertices[v][0] + cos(s->angle) * s->vertices[v][1];
+        double gap = (px - s->surfaces[i].point[0]) * m[0] + (py - s->surfaces[i].point[1]) * m[1];
+        if (gap < worst)
+          worst = gap, n[0] = m[0], n[1] = m[1];
+      }
+    }
+    if (worst > 0.001)
+      break;
+    s->x += n[0] * 0.003, s->y += n[1] * 0.003, s->angle *= 0.97;
+  }
+}
+
 static inline void random_case_init(random_case *c, uint64_t seed)
 {
   rng r = {seed * UINT64_C(7919) + 12345};
@@ -97,24 +119,7 @@ static inline void random_case_init(random_case *c, uint64_t seed)
   s->angle = rng_range(&r, -0.6, 0.6);
   s->x = 0;
   s->y = 0.12;
-  /* Out of every surface. */
-  for (int k = 0; k < 200; k++) {
-    double worst = 1e9, n[2] = {0, 0};
-    for (int i = 0; i < s->surface_count; i++) {
-      double m[2];
-      stic_normal_from_degrees(s->surfaces[i].normal_deg, m);
-      for (int v = 0; v < s->vertex_count; v++) {
-        double px = s->x + cos(s->angle) * s->vertices[v][0] - sin(s->angle) * s->vertices[v][1];
-        double py = s->y + sin(s->angle) * s->vertices[v][0] + cos(s->angle) * s->vertices[v][1];
-        double gap = (px - s->surfaces[i].point[0]) * m[0] + (py - s->surfaces[i].point[1]) * m[1];
-        if (gap < worst)
-          worst = gap, n[0] = m[0], n[1] = m[1];
-      }
-    }
-    if (worst > 0.001)
-      break;
-    s->x += n[0] * 0.003, s->y += n[1] * 0.003, s->angle *= 0.97;
-  }
+  random_free_start(s);
   c->x = s->x + cos(s->angle) * s->holding_point[0] - sin(s->angle) * s->holding_point[1];
   c->y = s->y + sin(s->angle) * s->holding_point[0] + cos(s->angle) * s->holding_point[1];
   c->phi = s->angle;

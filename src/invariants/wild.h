@@ -76,21 +76,23 @@ static inline void wild_place(wild_case *c, double scale, double dx, double dy)
   c->size *= scale;
 }
 
-static inline void wild_init(wild_case *c, uint64_t seed)
+/* A polygon, or a box, also a thin one; about `width` by `height`. */
+static inline void wild_body(wild_case *c, double width, double height)
 {
-  memset(c, 0, sizeof *c);
-  rng r = {seed * UINT64_C(0x2545F4914F6CDD1D) + 99};
-  c->r = r;
   stic_scene *s = &c->scene;
-  stic_scene_init(s);
-  double w = rng_range(&c->r, 0.05, 0.2), h = rng_range(&c->r, 0.02, 0.2);
   switch (rng_below(&c->r, 5)) {
-  case 0: random_polygon(s, &c->r, 3 + rng_below(&c->r, 6), w / 2, h / 2); break;
-  case 1: random_polygon(s, &c->r, 9 + rng_below(&c->r, 56), w / 2, h / 2); break;
-  case 2: stic_scene_set_box(s, w, w * 1e-3); break;
-  default: stic_scene_set_box(s, w, h);
+  case 0: random_polygon(s, &c->r, 3 + rng_below(&c->r, 6), width / 2, height / 2); break;
+  case 1: random_polygon(s, &c->r, 9 + rng_below(&c->r, 56), width / 2, height / 2); break;
+  case 2: stic_scene_set_box(s, width, width * 1e-3); break;
+  default: stic_scene_set_box(s, width, height);
   }
   c->size = stic_scene_size(s);
+}
+
+/* How stiff, where and when it is held. */
+static inline void wild_hold(wild_case *c, double width, double height)
+{
+  stic_scene *s = &c->scene;
   s->stiffness = rng_below(&c->r, 4) ? 200 : pow(10, rng_range(&c->r, -6, 6));
   switch (rng_below(&c->r, 6)) {
   case 0: s->rotational_stiffness = 0; break;
@@ -105,10 +107,16 @@ static inline void wild_init(wild_case *c, uint64_t seed)
     break;
   }
   default:
-    s->holding_point[0] = rng_range(&c->r, -w, w) * 0.6, s->holding_point[1] = rng_range(&c->r, -h, h) * 0.6;
+    s->holding_point[0] = rng_range(&c->r, -width, width) * 0.6,
+    s->holding_point[1] = rng_range(&c->r, -height, height) * 0.6;
   }
   s->hold = rng_below(&c->r, 3) ? STIC_HOLD_START : STIC_HOLD_BUTTON;
   s->angle = rng_below(&c->r, 3) ? rng_range(&c->r, -3, 3) : 0;
+}
+
+static inline void wild_room(wild_case *c, double width)
+{
+  stic_scene *s = &c->scene;
   s->x = 0, s->y = 0.6;
   c->home[0] = 0, c->home[1] = 0.05;
   switch (rng_below(&c->r, 9)) {
@@ -126,7 +134,7 @@ static inline void wild_init(wild_case *c, uint64_t seed)
     break;
   }
   case 5: { /* slot with a floor, narrower than the object is long */
-    double gap = rng_range(&c->r, 1.001, 1.1) * w;
+    double gap = rng_range(&c->r, 1.001, 1.1) * width;
     for (int i = 0; i < s->vertex_count; i++)
       gap = fmax(gap, 2.002 * fabs(s->vertices[i][0]));
     s->angle = 0;
@@ -151,6 +159,19 @@ static inline void wild_init(wild_case *c, uint64_t seed)
     wild_surface(c, 0, 0, 90), wild_surface(c, 1, 0, 90), wild_surface(c, 0, -1e-16, 90),
       wild_surface(c, -0.1, 0, 0);
   }
+}
+
+static inline void wild_init(wild_case *c, uint64_t seed)
+{
+  memset(c, 0, sizeof *c);
+  rng r = {seed * UINT64_C(0x2545F4914F6CDD1D) + 99};
+  c->r = r;
+  stic_scene *s = &c->scene;
+  stic_scene_init(s);
+  double width = rng_range(&c->r, 0.05, 0.2), height = rng_range(&c->r, 0.02, 0.2);
+  wild_body(c, width, height);
+  wild_hold(c, width, height);
+  wild_room(c, width);
   wild_free_start(c);
   double cosine = cos(s->angle), sine = sin(s->angle);
   c->x = s->x + cosine * s->holding_point[0] - sine * s->holding_point[1];
