@@ -183,7 +183,8 @@ static inline void wild_init(wild_case *c, uint64_t seed)
     wild_place(c, pow(10, rng_range(&c->r, -4, 4)), 0, 0);
   if (!rng_below(&c->r, 6)) {
     double far = c->size * pow(10, rng_range(&c->r, 0, 5));
-    wild_place(c, 1, rng_range(&c->r, -far, far), rng_range(&c->r, -far, far));
+    double dy = rng_range(&c->r, -far, far), dx = rng_range(&c->r, -far, far);
+    wild_place(c, 1, dx, dy);
   }
 }
 
