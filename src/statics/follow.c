@@ -306,6 +306,32 @@ static int work_done(const core *c)
   return c->report->iterations + 16 * c->stages + 4 * c->flow_solves;
 }
 
+static void record_snap(core *c, real turn)
+{
+  bool held = c->contact_count > 0;
+  c->report->decisions |= STIC_DECISION_SNAP;
+  record(c, STIC_EVENT_SNAP, held ? c->contacts[0].vertex : -1, held ? c->contacts[0].surface : -1,
+         held ? c->contacts[0].place : holding_point(c), turn);
+}
+
+/* RELAX just after an event. Located to rounding, the judgement may still see rest: a little later it does not.
+ * Returns where on the path. */
+static real relax_after(core *c, const hand_path *w, real tau, real next, bool snap, double t_from,
+                        double t_to)
+{
+  real offset = AFTER_EVENT;
+  for (int i = 0; i < ESCALATIONS_MAX; i++) {
+    next = r_min(1, r_max(next, tau + REAL_EPSILON));
+    relax(c, hand_at(w, next), t_from + (double)next * (t_to - t_from));
+    c->happened |= snap;
+    if (c->window_open || c->happened || next >= 1)
+      break;
+    offset *= 4;
+    next += offset;
+  }
+  return next;
+}
+
 static void follow_event(core *c, hand from, hand to, double t_from, double t_to)
 {
   hand_path w = {from, to, v_sub(to.h, from.h), to.phi - from.phi};
@@ -340,23 +366,10 @@ static void follow_event(core *c, hand from, hand to, double t_from, double t_to
       e = find_event(c, &w, tau);
       next = e.at < R_HUGE ? e.at + AFTER_EVENT : 1;
     }
-    real offset = AFTER_EVENT, theta = c->theta;
-    for (int i = 0; i < ESCALATIONS_MAX; i++) {
-      next = r_min(1, r_max(next, tau + REAL_EPSILON));
-      relax(c, hand_at(&w, next), t_from + (double)next * (t_to - t_from));
-      c->happened |= e.snap;
-      /* Located to rounding, the judgement may still see rest: a little later it does not. */
-      if (c->window_open || c->happened || next >= 1)
-        break;
-      offset *= 4;
-      next += offset;
-    }
-    if (e.snap) {
-      c->report->decisions |= STIC_DECISION_SNAP;
-      bool held = c->contact_count > 0;
-      record(c, STIC_EVENT_SNAP, held ? c->contacts[0].vertex : -1, held ? c->contacts[0].surface : -1,
-             held ? c->contacts[0].place : holding_point(c), r_abs(c->theta - theta));
-    }
+    real theta = c->theta;
+    next = relax_after(c, &w, tau, next, e.snap, t_from, t_to);
+    if (e.snap)
+      record_snap(c, r_abs(c->theta - theta));
     c->window_open = c->happened && !c->sliding;
     tau = next;
   }

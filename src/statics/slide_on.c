@@ -262,6 +262,51 @@ static bool trammel_branch(core *c, const hand *from, const hand *to, sliding_br
   return true;
 }
 
+/* The first touch up to x of those that depend on the angle alone. False: the other gaps are too many. */
+static bool touch_by_turning(core *c, sliding_branch *b, real x, touch *t)
+{
+  *t = (touch){R_HUGE, 0, 0};
+  if (!b->single) {
+    *t = path_first_touch(c, &b->paths[0], x);
+    return true;
+  }
+  if (!single_gaps(c, b))
+    return false;
+  near_update(c, x * 2 * c->body.radius);
+  for (near_pair k = {0}; next_near(c, &k);) {
+    if (v_dot(c->body.surfaces[k.surface].n, b->paths[0].t) != 0)
+      continue;
+    wave gap = path_gap(c, &b->paths[0], k.vertex, k.surface);
+    keep_earlier(t, wave_first_down(&gap, c->noise, x), k.vertex, k.surface);
+  }
+  return true;
+}
+
+/* The s at which the angle comes to *x_stop; 1, and *x_stop huge, if the branch folds before. */
+static real s_of_angle(sliding_branch *b, real *x_stop)
+{
+  real before = curve_at(&b->drives[0], *x_stop), after = curve_at(&b->drives[1], *x_stop);
+  real s = after > before ? r_max(0, r_min(1, -before / (after - before))) : 1;
+  if (sliding_at(b, s).x >= *x_stop - ANGLE_TIE)
+    return s;
+  *x_stop = R_HUGE;
+  return 1;
+}
+
+static void advance_to(core *c, sliding_branch *b, real s)
+{
+  sliding_point p = sliding_at(b, s);
+  path f = b->paths[0];
+  if (!(s > 0))
+    return;
+  if (b->single)
+    f.origin = v_mix(c->contacts[0].place, mix(b->shifts[0], s, b->shifts[1]), f.t);
+  path_set_pose(c, &f, p.x);
+  advance_contact(c, &c->contacts[0], path_place(&f, p.x));
+  if (!b->single)
+    advance_contact(c, &c->contacts[1], world_vertex(c, c->contacts[1].vertex));
+}
+
 /* Slides along the turning branch as far as it goes; *part is how far along the rest of the path. */
 static slide_end slide_on_turning(core *c, const hand *from, const hand *to, real *part)
 {
@@ -276,48 +321,19 @@ static slide_end slide_on_turning(core *c, const hand *from, const hand *to, rea
   bool moves = curve_at(&b.drives[1], 0) > 0;
   if (!moves && !b.single)
     return SLIDE_ON_STUCK;
-  real x = 0, s_end = 1;
-  bool ends_early = false;
+  real x = 0;
+  bool reverses = false; /* one contact of a trammel */
   if (moves)
-    ends_early = !curve_first_zero(&b.drives[1], b.x_max, &x, &c->report->iterations) && b.x_max < 2 * R_PI;
+    reverses = !curve_first_zero(&b.drives[1], b.x_max, &x, &c->report->iterations) && b.x_max < 2 * R_PI;
   b.x_max = x;
-  /* Touches that depend on the angle alone, and a reversal of one contact of a trammel. */
-  touch t = {R_HUGE, 0, 0};
-  if (b.single) {
-    if (!single_gaps(c, &b))
-      return SLIDE_ON_UNSURE;
-    path fixed = b.paths[0];
-    near_update(c, x * 2 * c->body.radius);
-    for (near_pair k = {0}; next_near(c, &k);) {
-      if (v_dot(c->body.surfaces[k.surface].n, fixed.t) != 0)
-        continue;
-      wave gap = path_gap(c, &fixed, k.vertex, k.surface);
-      keep_earlier(&t, wave_first_down(&gap, c->noise, x), k.vertex, k.surface);
-    }
-  } else {
-    t = path_first_touch(c, &b.paths[0], x);
-  }
-  real x_stop = t.at < R_HUGE ? t.at : ends_early ? x : R_HUGE;
-  if (x_stop < R_HUGE) {
-    real before = curve_at(&b.drives[0], x_stop), after = curve_at(&b.drives[1], x_stop);
-    real s = after > before ? r_max(0, r_min(1, -before / (after - before))) : 1;
-    if (sliding_at(&b, s).x >= x_stop - ANGLE_TIE)
-      s_end = s; /* else the branch folds first */
-    else
-      x_stop = R_HUGE;
-  }
+  touch t;
+  if (!touch_by_turning(c, &b, x, &t))
+    return SLIDE_ON_UNSURE;
+  real x_stop = t.at < R_HUGE ? t.at : reverses ? x : R_HUGE;
+  real s_end = x_stop < R_HUGE ? s_of_angle(&b, &x_stop) : 1;
   int lost;
   *part = last_sliding(&b, s_end, &lost);
-  sliding_point p = sliding_at(&b, *part);
-  path f = b.paths[0];
-  if (b.single)
-    f.origin = v_mix(c->contacts[0].place, mix(b.shifts[0], *part, b.shifts[1]), f.t);
-  if (*part > 0) {
-    path_set_pose(c, &f, p.x);
-    advance_contact(c, &c->contacts[0], path_place(&f, p.x));
-    if (!b.single)
-      advance_contact(c, &c->contacts[1], world_vertex(c, c->contacts[1].vertex));
-  }
+  advance_to(c, &b, *part);
   if (b.single && lost == 1)
     return SLIDE_ON_STUCK;
   if (lost == LOST_STEPS)
