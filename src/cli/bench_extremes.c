@@ -420,14 +420,15 @@ static void run_case(bench *b, const stic_extreme *start, const label *name, int
 /* Digits that the balance is met to: of the worst row of all levels. Frames count from `before` this case. */
 static void add_heat(stic_heat_map *map, const stic_extreme *e, const tally *t, const tally *before)
 {
-  stic_heat_point *more;
-
   if (map->count == map->room) {
-    map->room = map->room * 2 + 256;
-    more = realloc(map->points, (size_t)map->room * sizeof *more);
+    const int room = map->room * 2 + 256;
+    stic_heat_point *more = realloc(map->points, (size_t)room * sizeof *more);
+
+    map->lacks_memory |= !more;
     if (!more)
       return;
     map->points = more;
+    map->room = room;
   }
   const bool answered = t->frames - before->frames > t->no_answer - before->no_answer;
   const double digits = t->residual > 0 ? -log10(t->residual) : 17;
@@ -540,8 +541,10 @@ static bool run_sweep(bench *b, const stic_sweep *sweep)
     for (int p = 0; p < PRECISIONS; p++) {
       stic_heat_map *map = map_of(b, sweep->name, p);
 
-      if (map)
+      if (map) {
+        map->label_a = sweep->axis_a, map->label_b = sweep->axis_b;
         add_heat(map, &e, &b->tallies[p], &before[p]);
+      }
       b->tallies[p].residual = fmax(b->tallies[p].residual, before[p].residual);
     }
   }
@@ -656,10 +659,10 @@ static stic_status write_picture(bench *b)
   for (int i = 0; i < 2 * PRECISIONS; i++) {
     stic_heat_map *map = &b->maps[i];
 
+    if (map->lacks_memory)
+      return stic_error_set(&b->err, STIC_NO_MEMORY, NULL, 0, "out of memory");
     snprintf(map->title, sizeof map->title, "%s: %s", stic_precision_name(precisions[i % PRECISIONS]),
              titles[i / PRECISIONS]);
-    map->label_a = i < PRECISIONS ? "k_p, N/m" : "size, m";
-    map->label_b = i < PRECISIONS ? "mu_s" : "distance from the origin, sizes";
   }
   return stic_heat_picture(b->options->picture, &b->maps[first], count, PRECISIONS, &b->err);
 }

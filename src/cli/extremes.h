@@ -66,6 +66,7 @@ typedef struct stic_heat_map {
   const char *label_a, *label_b;
   stic_heat_point *points; /* row by row: a changes slowest */
   int count, room;
+  bool lacks_memory; /* for a point */
 } stic_heat_map;
 
 /* Draws the maps that have points, `columns` a row, by gnuplot. STIC_USAGE without gnuplot, STIC_CANNOT_WRITE. */

@@ -465,7 +465,7 @@ const stic_sweep stic_sweeps[] = {
   {"k_p-mu", "k_p, N/m", "mu_s", 11, stiffness_friction},
   {"shape", "size, m", "aspect ratio", 7, shape},
   {"polygon", "vertices", "kind", 1, polygon},
-  {"distance", "size, m", "distance, sizes", 5, distance},
+  {"distance", "size, m", "distance from the origin, sizes", 5, distance},
   {"surfaces", "angle, rad", "kind", 1, surfaces},
   {"hand", "extent", "kind", 1, hands},
   {"press", "depth, sizes", "mu_s", 3, pressing},
