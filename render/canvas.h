@@ -58,7 +58,6 @@ stic_font *stic_font_create(bool bold, double pixels);
 void stic_font_destroy(stic_font *font); /* NULL allowed */
 
 int stic_font_height(const stic_font *font);                  /* px from one line to the next */
-int stic_font_ascent(const stic_font *font);                  /* px from the top of a line to its base line */
 int stic_font_width(const stic_font *font, const char *text); /* px; UTF-8, unknown characters show as '?' */
 
 /* Text with the upper left corner of its line at (x, y). */

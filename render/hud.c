@@ -570,7 +570,7 @@ void stic_hud_draw(stic_hud *h, const stic_canvas *c, const stic_view *view, con
 
 /* ---- scale bar ----------------------------------------------------------------------------- */
 
-stic_rect stic_hud_scale_area(const stic_hud *h)
+static stic_rect scale_area(const stic_hud *h)
 {
   int w = px(h, 190), line = stic_font_height(h->small);
 
@@ -579,7 +579,7 @@ stic_rect stic_hud_scale_area(const stic_hud *h)
 
 stic_rect stic_hud_note_area(const stic_hud *h)
 {
-  stic_rect scale = stic_hud_scale_area(h);
+  stic_rect scale = scale_area(h);
 
   return (stic_rect){0, scale.y0, scale.x0, scale.y1};
 }
@@ -660,7 +660,7 @@ static stic_rect find_place(const stic_hud *h, const stic_labels *labels, const 
   /* cos and sin of 0, 45, -45, 90, -90, 135, -135, 180 degrees */
   static const double turns[8][2] = {{1, 0},  {0.7071, 0.7071},  {0.7071, -0.7071},  {0, 1},
                                      {0, -1}, {-0.7071, 0.7071}, {-0.7071, -0.7071}, {-1, 0}};
-  stic_rect scale = stic_hud_scale_area(h);
+  stic_rect scale = scale_area(h);
 
   for (int i = 0; i < (l->firm ? 1 : 16); i++) {
     const double *turn = turns[i % 8];

@@ -34,10 +34,9 @@ void stic_hud_draw_fixed(const stic_hud *hud, const stic_canvas *canvas);
 void stic_hud_draw(stic_hud *hud, const stic_canvas *canvas, const stic_view *view,
                    const stic_history *history);
 
-/* The bar that says how long a newton is drawn; within the view. */
-stic_rect stic_hud_scale_area(const stic_hud *hud);
-/* Where the note goes, in the view's other corner. */
+/* Where the note goes, in the corner of the view that the scale bar leaves. */
 stic_rect stic_hud_note_area(const stic_hud *hud);
+/* The bar that says how long a newton is drawn; within the view. */
 void stic_hud_draw_scale(const stic_hud *hud, const stic_canvas *canvas, const stic_view *view);
 
 /* Chooses places inside the view (px of the picture); areas[i] is empty if label i finds none. Those before

@@ -117,11 +117,6 @@ int stic_font_height(const stic_font *font)
   return font->height;
 }
 
-int stic_font_ascent(const stic_font *font)
-{
-  return font->ascent;
-}
-
 /* Takes one character off UTF-8 text; malformed bytes count one by one. */
 static int next_code(const char **text)
 {

@@ -108,7 +108,7 @@ void stic_plot_destroy(stic_plot *p)
 
 const char *stic_plot_provenance(const stic_plot *p, const char *key, int n)
 {
-  return stic_log_provenance_nth(p->log, key, n);
+  return stic_log_provenance(p->log, key, n);
 }
 
 void stic_plot_set_scene(stic_plot *p, const stic_scene *scene)

@@ -48,8 +48,7 @@ struct stic_viewer {
 
   stic_device *mouse; /* NULL: the hand is another device's */
   stic_mouse_hand hand;
-  bool parked;           /* the hand waits for the pointer to come to it */
-  unsigned last_buttons; /* the pointer's */
+  bool parked; /* the hand waits for the pointer to come to it */
 };
 
 /* ---- pictures ---------------------------------------------------------------------------- */

@@ -25,7 +25,6 @@ struct stic_bench_unit {
   char port[64];
   double rate;
   int64_t count;
-  int64_t sent_count; /* of `sent`, which is filled before it grows */
   int stopping;
   int64_t *sent; /* ns */
   bool started, in_command;
@@ -40,11 +39,6 @@ const char *stic_bench_unit_port(const stic_bench_unit *unit)
 int64_t stic_bench_unit_index(double z)
 {
   return llround(z / METRES);
-}
-
-int64_t stic_bench_unit_count(const stic_bench_unit *unit)
-{
-  return __atomic_load_n(&unit->sent_count, __ATOMIC_ACQUIRE);
 }
 
 int64_t stic_bench_unit_sent(const stic_bench_unit *unit, int64_t index)
@@ -131,7 +125,6 @@ static void *serve(void *context)
       stic_clock_sleep_until(due_ns);
     __atomic_store_n(&u->sent[i], stic_clock_ns(), __ATOMIC_RELEASE);
     send(u, bytes, sizeof bytes);
-    __atomic_store_n(&u->sent_count, i + 1, __ATOMIC_RELEASE);
   }
   return NULL;
 }

@@ -21,9 +21,6 @@ int64_t stic_bench_unit_index(double z);
 /* When record `index` was handed to the terminal, all bytes at once, CLOCK_MONOTONIC; 0: not yet. Any thread. */
 int64_t stic_bench_unit_sent(const stic_bench_unit *unit, int64_t index);
 
-/* How many are sent. Any thread. */
-int64_t stic_bench_unit_count(const stic_bench_unit *unit);
-
 void stic_bench_unit_stop(stic_bench_unit *unit); /* NULL allowed */
 
 #endif

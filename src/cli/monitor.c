@@ -57,7 +57,8 @@ void stic_monitor_add(stic_monitor *m, const stic_device_sample *s, uint32_t bit
     extend_trail(m, s);
 }
 
-void stic_monitor_rate(const stic_monitor *m, double *hz, double *jitter_ms)
+/* Rate in Hz and the standard deviation of the intervals in ms over the last two seconds; 0 if there are too few. */
+static void find_rate(const stic_monitor *m, double *hz, double *jitter_ms)
 {
   const int64_t newest = m->count > 0 ? m->times[(m->count - 1) % STIC_MONITOR_TIMES] : 0;
   double sum = 0, squares = 0, mean;
@@ -188,7 +189,7 @@ static void put_state(page *p, const stic_monitor *m)
 {
   double hz, jitter;
 
-  stic_monitor_rate(m, &hz, &jitter);
+  find_rate(m, &hz, &jitter);
   label(p, "state");
   colour(p, state_colour(m->state));
   glyph(p, m->state == STIC_CONNECTION_RUNNING ? "●" : "○", '*');
@@ -476,7 +477,7 @@ size_t stic_monitor_line(const stic_monitor *m, char *out, size_t out_size)
   double hz, jitter, angles[3];
   int n;
 
-  stic_monitor_rate(m, &hz, &jitter);
+  find_rate(m, &hz, &jitter);
   angles_of(m->sample.orientation, angles);
   n = snprintf(
     out, out_size,

@@ -38,9 +38,6 @@ void stic_monitor_add(stic_monitor *monitor, const stic_device_sample *sample, u
 /* Forgets trail, rate and pose. */
 void stic_monitor_reset(stic_monitor *monitor);
 
-/* Rate in Hz and the standard deviation of the intervals in ms over the last two seconds; 0 if there are too few. */
-void stic_monitor_rate(const stic_monitor *monitor, double *hz, double *jitter_ms);
-
 typedef struct stic_monitor_look {
   int columns, rows; /* of the terminal; cut to the limits above */
   bool unicode, colour;

@@ -211,18 +211,13 @@ void stic_log_close(stic_log_reader *reader)
   free(reader);
 }
 
-const char *stic_log_provenance_nth(const stic_log_reader *reader, const char *key, int n)
+const char *stic_log_provenance(const stic_log_reader *reader, const char *key, int n)
 {
   for (int i = 0; i < reader->provenance_count; i++) {
     if (strcmp(reader->provenance[i].key, key) == 0 && n-- == 0)
       return reader->provenance[i].value;
   }
   return "";
-}
-
-const char *stic_log_provenance_value(const stic_log_reader *reader, const char *key)
-{
-  return stic_log_provenance_nth(reader, key, 0);
 }
 
 /* Fields of one row, taken from left to right; the first that is wrong is remembered. */

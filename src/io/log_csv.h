@@ -39,9 +39,8 @@ void stic_log_close(stic_log_reader *reader); /* NULL allowed */
  * contacts after the fourth (contact_count stays the true number). A signal while it waits is an error. */
 stic_status stic_log_next(stic_log_reader *reader, stic_result *result, bool *more, stic_error *err);
 
-/* Value of a provenance line, "" if there is none; lives as long as the reader. */
-const char *stic_log_provenance_value(const stic_log_reader *reader, const char *key);
-/* The same for the n-th line (from 0) of that key: "set" may occur several times. */
-const char *stic_log_provenance_nth(const stic_log_reader *reader, const char *key, int n);
+/* Value of the n-th provenance line (from 0) of that key: "set" may occur several times. "" if there is none; lives as
+ * long as the reader. */
+const char *stic_log_provenance(const stic_log_reader *reader, const char *key, int n);
 
 #endif

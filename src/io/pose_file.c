@@ -19,7 +19,7 @@ struct stic_pose_reader {
   stic_line_reader *lines;
   stic_pose_format format;
   stic_pose_options options;
-  int64_t poses, skipped, last_ns;
+  int64_t poses, last_ns;
 };
 
 /* What a format's columns are. */
@@ -62,11 +62,6 @@ void stic_pose_close(stic_pose_reader *reader)
     return;
   stic_line_reader_close(reader->lines);
   free(reader);
-}
-
-int64_t stic_pose_skipped(const stic_pose_reader *reader)
-{
-  return reader->skipped;
 }
 
 /* ---- one line ---------------------------------------------------------------------------- */
@@ -218,7 +213,6 @@ stic_pose_status stic_pose_next(stic_pose_reader *r, stic_sample *pose, stic_err
         *err = problem;
       return STIC_POSE_BAD;
     }
-    r->skipped++;
     report(r, false, &problem);
   }
 }

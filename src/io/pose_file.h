@@ -40,6 +40,4 @@ stic_pose_status stic_pose_next(stic_pose_reader *reader, stic_sample *pose, sti
 /* Tells the format of a file by its first line that is no comment: false if it looks like neither. Real-time: no. */
 bool stic_pose_recognize(const char *line, size_t length, stic_pose_format *format);
 
-int64_t stic_pose_skipped(const stic_pose_reader *reader); /* lines passed over so far */
-
 #endif

@@ -31,7 +31,6 @@ typedef struct sliding_branch {
   real slack; /* what a balance may be off */
   vec w;      /* single: t + sigma mu n, the place is w . (h - r) */
   real sigma;
-  vec hand_travel;
   int gap_count; /* single: gaps to other surfaces that depend on the place as well, in c->gaps */
   real x_max;
 } sliding_branch;

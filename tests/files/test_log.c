@@ -65,12 +65,12 @@ static void test_round_trip(void **state)
 
   (void)state;
   assert_int_equal(stic_log_open(path, &reader, &err), STIC_OK);
-  assert_string_equal(stic_log_provenance_value(reader, "scene"), "a?b.yaml");
-  assert_string_equal(stic_log_provenance_value(reader, "accuracy"), "event");
-  assert_string_equal(stic_log_provenance_value(reader, "precision"), "f64");
-  assert_string_equal(stic_log_provenance_value(reader, "version"), STIC_VERSION);
-  assert_string_equal(stic_log_provenance_value(reader, "set"), "friction.static=0.6?");
-  assert_string_equal(stic_log_provenance_value(reader, "none"), "");
+  assert_string_equal(stic_log_provenance(reader, "scene", 0), "a?b.yaml");
+  assert_string_equal(stic_log_provenance(reader, "accuracy", 0), "event");
+  assert_string_equal(stic_log_provenance(reader, "precision", 0), "f64");
+  assert_string_equal(stic_log_provenance(reader, "version", 0), STIC_VERSION);
+  assert_string_equal(stic_log_provenance(reader, "set", 0), "friction.static=0.6?");
+  assert_string_equal(stic_log_provenance(reader, "none", 0), "");
   for (int i = 0; i < 1000; i++) {
     stic_result expected = a_result(i);
 

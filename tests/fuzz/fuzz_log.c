@@ -40,7 +40,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     require(err.message[0] != '\0');
     return 0;
   }
-  require(strlen(stic_log_provenance_value(reader, "scene")) < 1024);
+  require(strlen(stic_log_provenance(reader, "scene", 0)) < 1024);
   while (more && stic_log_next(reader, &row, &more, &err) == STIC_OK) {
     if (more)
       check_row(&row);
