@@ -1,3 +1,4 @@
+/* Scenes in memory: made, measured, and examined for what no solver can take (stiction.h, scene_keys.h). */
 #include "angle.h"
 #include "error.h"
 #include "scene_keys.h"

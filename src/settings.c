@@ -1,3 +1,4 @@
+/* Accuracy and precision, from and to the words that users write (stiction.h). */
 #include "error.h"
 #include "number.h"
 

@@ -177,14 +177,6 @@ stic_status stic_hid_recording_begin(stic_raw_reader *reader, const char *path,
   return STIC_OK;
 }
 
-stic_status stic_hid_recording_open(const char *path, stic_hid_recording **recording, stic_error *err)
-{
-  stic_raw_reader *reader;
-  const stic_status status = stic_raw_open(path, &reader, err);
-
-  return status == STIC_OK ? stic_hid_recording_begin(reader, path, recording, err) : status;
-}
-
 void stic_hid_recording_close(stic_hid_recording *recording)
 {
   if (recording)

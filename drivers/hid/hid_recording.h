@@ -7,12 +7,10 @@
 typedef struct stic_hid_recording stic_hid_recording;
 
 /* Makes a transport of a recording that has just been opened, and owns it from then on, also on failure.
- * STIC_BAD_INPUT, also for a serial recording; STIC_NO_MEMORY. Real-time: no. */
+ * STIC_BAD_INPUT, also for a serial recording; STIC_NO_MEMORY. The caller owns `*recording`. Real-time: no. */
 stic_status stic_hid_recording_begin(stic_raw_reader *reader, const char *path,
                                      stic_hid_recording **recording, stic_error *err);
 
-/* Ditto, opening it ("-": standard input). The caller owns `*recording`. */
-stic_status stic_hid_recording_open(const char *path, stic_hid_recording **recording, stic_error *err);
 void stic_hid_recording_close(stic_hid_recording *recording); /* NULL allowed */
 
 /* Its nodes are "recording:0" ... for the devices known at its first event. Its clock is the recording's: it stands

@@ -1,3 +1,4 @@
+/* What the page knows of the run, as JSON: scene, settings, files, version. */
 #include <errno.h>
 #include <jansson.h>
 #include <stdio.h>

@@ -54,6 +54,14 @@ static void assert_same_samples(const stic_device_sample *a, const stic_device_s
   }
 }
 
+static stic_status open_recording(const char *from, stic_hid_recording **recording, stic_error *err)
+{
+  stic_raw_reader *reader;
+  const stic_status status = stic_raw_open(from, &reader, err);
+
+  return status == STIC_OK ? stic_hid_recording_begin(reader, from, recording, err) : status;
+}
+
 static void replay(const char *spec_text, stic_device_sample *samples, int *count)
 {
   stic_hid_recording *recording = NULL;
@@ -61,7 +69,7 @@ static void replay(const char *spec_text, stic_device_sample *samples, int *coun
   stic_device_spec spec;
   stic_error err = {.status = STIC_OK};
 
-  if (stic_hid_recording_open(path, &recording, &err) != STIC_OK)
+  if (open_recording(path, &recording, &err) != STIC_OK)
     fail_msg("%s", err.message);
   assert_int_equal(stic_spec_parse(spec_text, &spec, &err), STIC_OK);
   if (stic_hid_open_over(stic_hid_recording_transport(recording), &spec, &device, &err) != STIC_OK)
@@ -192,7 +200,7 @@ static void test_two_nodes(void **state)
     write_event(file, 4 * i + 1, gamepad, sizeof gamepad);
   }
   assert_int_equal(fclose(file), 0);
-  assert_int_equal(stic_hid_recording_open(path, &recording, &err), STIC_OK);
+  assert_int_equal(open_recording(path, &recording, &err), STIC_OK);
   assert_int_equal(stic_spec_parse("hydra", &spec, &err), STIC_OK);
   assert_int_equal(stic_hid_open_over(stic_hid_recording_transport(recording), &spec, &device, &err),
                    STIC_OK);
@@ -209,10 +217,10 @@ static void test_refusals(void **state)
 
   (void)state;
   write_text("# stiction-serial 1\n0 2a 52\n");
-  assert_int_equal(stic_hid_recording_open(path, &recording, &err), STIC_BAD_INPUT);
+  assert_int_equal(open_recording(path, &recording, &err), STIC_BAD_INPUT);
   write_text("R: 1 00\nI: 3 046d c626\nE: 0.0 3 01 02\n");
-  assert_int_equal(stic_hid_recording_open(path, &recording, &err), STIC_BAD_INPUT);
-  assert_int_equal(stic_hid_recording_open("/nonexistent", &recording, &err), STIC_BAD_INPUT);
+  assert_int_equal(open_recording(path, &recording, &err), STIC_BAD_INPUT);
+  assert_int_equal(open_recording("/nonexistent", &recording, &err), STIC_BAD_INPUT);
   assert_null(recording);
   stic_hid_recording_close(NULL);
 }
