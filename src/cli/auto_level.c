@@ -2,7 +2,7 @@
 
 #include "../clock.h"
 #include "../error.h"
-#include "trade.h"
+#include "bench/trade.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,5 +1,5 @@
 /* stiction bench: the measurements, one file each. */
-#include "bench.h"
+#include "bench/bench.h"
 #include "cli.h"
 
 #include <limits.h>

@@ -2,7 +2,7 @@
 #ifndef PEER_SCENES_H
 #define PEER_SCENES_H
 
-#include "../../src/cli/trade.h"
+#include "../../src/cli/bench/trade.h"
 
 typedef struct peer_scene {
   const char *name, *about;

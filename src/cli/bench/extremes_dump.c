@@ -1,7 +1,7 @@
 /* A case of `stiction bench extremes` as a scene file and a trace, so that `stiction replay` shows it. */
-#include "../angle.h"
-#include "../io/outfile.h"
-#include "../io/trace_csv.h"
+#include "../../angle.h"
+#include "../../io/outfile.h"
+#include "../../io/trace_csv.h"
 #include "extremes.h"
 
 #include <errno.h>

@@ -1,13 +1,13 @@
 /* stiction bench speed: what a sample costs. */
 #define _XOPEN_SOURCE 700 /* mkdtemp() */
-#include "../angle.h"
-#include "../error.h"
-#include "../io/log_csv.h"
-#include "../io/timing.h"
-#include "../io/trace_csv.h"
-#include "../sim.h"
+#include "../../angle.h"
+#include "../../error.h"
+#include "../../io/log_csv.h"
+#include "../../io/timing.h"
+#include "../../io/trace_csv.h"
+#include "../../sim.h"
 #include "bench.h"
-#include "cli.h"
+#include "../cli.h"
 #include "trade.h"
 
 #include <math.h>

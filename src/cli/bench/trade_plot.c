@@ -1,5 +1,5 @@
 /* The work-precision diagram of `stiction bench trade`, by gnuplot. */
-#include "../error.h"
+#include "../../error.h"
 #include "trade.h"
 
 #include <errno.h>

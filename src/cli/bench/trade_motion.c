@@ -1,11 +1,11 @@
 /* Motions for `stiction bench trade` and `run --accuracy auto`: read, made or resampled; solved; compared. */
-#include "../angle.h"
-#include "../error.h"
-#include "../io/log_csv.h"
-#include "../io/timing.h"
-#include "../io/trace_csv.h"
-#include "../needs.h"
-#include "cli.h"
+#include "../../angle.h"
+#include "../../error.h"
+#include "../../io/log_csv.h"
+#include "../../io/timing.h"
+#include "../../io/trace_csv.h"
+#include "../../needs.h"
+#include "../cli.h"
 #include "trade.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 #define _XOPEN_SOURCE 700 /* posix_openpt() */
 #include "bench_unit.h"
 
-#include "../error.h"
-#include "../io/timing.h"
+#include "../../error.h"
+#include "../../io/timing.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -2,7 +2,7 @@
 #ifndef STIC_BENCH_H
 #define STIC_BENCH_H
 
-#include "../stiction.h"
+#include "../../stiction.h"
 
 #include <stdbool.h>
 #include <stdint.h>

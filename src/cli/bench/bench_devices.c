@@ -1,16 +1,16 @@
 /* stiction bench devices: from a report's bytes to its result and its line in the recording. */
 #define _XOPEN_SOURCE 700 /* mkstemp() */
-#include "../../drivers/gamepad/gamepad_decode.h"
-#include "../../drivers/hydra/hydra_decode.h"
-#include "../../drivers/logitech/logitech_stream.h"
-#include "../../drivers/spacemouse/spacemouse_decode.h"
-#include "../error.h"
-#include "../io/outfile.h"
-#include "../io/trace_csv.h"
-#include "../live/live.h"
+#include "../../../drivers/gamepad/gamepad_decode.h"
+#include "../../../drivers/hydra/hydra_decode.h"
+#include "../../../drivers/logitech/logitech_stream.h"
+#include "../../../drivers/spacemouse/spacemouse_decode.h"
+#include "../../error.h"
+#include "../../io/outfile.h"
+#include "../../io/trace_csv.h"
+#include "../../live/live.h"
 #include "bench.h"
 #include "bench_unit.h"
-#include "cli.h"
+#include "../cli.h"
 
 #include <stdio.h>
 #include <stdlib.h>

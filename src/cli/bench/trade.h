@@ -2,7 +2,7 @@
 #ifndef STIC_TRADE_H
 #define STIC_TRADE_H
 
-#include "../stiction.h"
+#include "../../stiction.h"
 
 /* ---- trade_motion.c: a scene and a hand's way through it ------------------------------------ */
 

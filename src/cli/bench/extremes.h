@@ -2,9 +2,9 @@
 #ifndef STIC_EXTREMES_H
 #define STIC_EXTREMES_H
 
-#include "../invariants/checker.h"
-#include "../invariants/wild.h"
-#include "../stiction.h"
+#include "../../invariants/checker.h"
+#include "../../invariants/wild.h"
+#include "../../stiction.h"
 
 /* ---- extremes_cases.c: the sweeps ------------------------------------------------------------ */
 

@@ -1,10 +1,10 @@
 /* stiction bench render: what a picture costs, on one core. */
 #define _XOPEN_SOURCE 700 /* mkdtemp(), nftw() */
-#include "../angle.h"
-#include "../error.h"
-#include "../io/timing.h"
+#include "../../angle.h"
+#include "../../error.h"
+#include "../../io/timing.h"
 #include "bench.h"
-#include "cli.h"
+#include "../cli.h"
 #include "png_encoder.h"
 #include "render.h"
 #include "video.h"

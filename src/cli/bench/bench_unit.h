@@ -3,7 +3,7 @@
 #ifndef STIC_BENCH_UNIT_H
 #define STIC_BENCH_UNIT_H
 
-#include "../stiction.h"
+#include "../../stiction.h"
 
 typedef struct stic_bench_unit stic_bench_unit;
 

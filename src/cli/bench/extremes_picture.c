@@ -1,7 +1,7 @@
 /* The heat maps of `stiction bench extremes`, by gnuplot. */
 #include "extremes.h"
 
-#include "../error.h"
+#include "../../error.h"
 
 #include <errno.h>
 #include <math.h>

@@ -1,10 +1,10 @@
 /* stiction bench extremes: every range swept to its ends, every row held against the model's invariants. */
-#include "../error.h"
-#include "../io/outfile.h"
-#include "../io/timing.h"
-#include "../sim.h"
+#include "../../error.h"
+#include "../../io/outfile.h"
+#include "../../io/timing.h"
+#include "../../sim.h"
 #include "bench.h"
-#include "cli.h"
+#include "../cli.h"
 #include "extremes.h"
 #include "trade.h"
 

@@ -1,10 +1,10 @@
 /* stiction bench trade: what accuracy costs and what it buys, on the user's own scene. */
-#include "../angle.h"
-#include "../error.h"
-#include "../io/outfile.h"
-#include "../io/timing.h"
+#include "../../angle.h"
+#include "../../error.h"
+#include "../../io/outfile.h"
+#include "../../io/timing.h"
 #include "bench.h"
-#include "cli.h"
+#include "../cli.h"
 #include "trade.h"
 
 #include <float.h>

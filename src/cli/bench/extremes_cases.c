@@ -1,6 +1,6 @@
 /* The sweeps of `stiction bench extremes`. Lengths of a tour are in units near the object's size, from a corner of
  * floor and wall at the origin. */
-#include "../angle.h"
+#include "../../angle.h"
 #include "extremes.h"
 
 #include <math.h>

@@ -1,11 +1,11 @@
 /* stiction bench validate: closed forms of friction, as a table that anyone can run. Only the public
  * interface is used; each formula is derived where it stands. N is the normal force, F the hand's pull, h the
  * depth by which the hand is pressed below the height of flush contact, so that N = k_p h. */
-#include "../angle.h"
-#include "../error.h"
-#include "../io/outfile.h"
+#include "../../angle.h"
+#include "../../error.h"
+#include "../../io/outfile.h"
 #include "bench.h"
-#include "cli.h"
+#include "../cli.h"
 
 #include <math.h>
 #include <stdio.h>
