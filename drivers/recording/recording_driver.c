@@ -2,7 +2,7 @@
 
 #include "../../src/error.h"
 #include "../../src/io/timing.h"
-#include "../recorded.h"
+#include "recorded.h"
 
 #include <stdio.h>
 #include <stdlib.h>

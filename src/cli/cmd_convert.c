@@ -1,6 +1,6 @@
 /* stiction convert: raw recordings of devices and pose files of other programs into traces. */
 #include "../../drivers/motion/tracker_yaml.h"
-#include "../../drivers/recorded.h"
+#include "../../drivers/recording/recorded.h"
 #include "../error.h"
 #include "../io/format.h"
 #include "../io/line_reader.h"

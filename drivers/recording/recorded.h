@@ -3,8 +3,8 @@
 #ifndef STIC_RECORDED_H
 #define STIC_RECORDED_H
 
-#include "connection.h"
-#include "raw_recording.h"
+#include "../connection.h"
+#include "../raw_recording.h"
 
 typedef struct stic_recorded_options {
   const char *driver; /* NAME[:key=value,...] as for a live device; NULL: the driver that the recording's own

@@ -1,10 +1,10 @@
 #include "recorded.h"
 
-#include "../src/error.h"
-#include "hid/hid_drivers.h"
-#include "hid/hid_recording.h"
-#include "logitech/logitech_driver.h"
-#include "logitech/logitech_recording.h"
+#include "../../src/error.h"
+#include "../hid/hid_drivers.h"
+#include "../hid/hid_recording.h"
+#include "../logitech/logitech_driver.h"
+#include "../logitech/logitech_recording.h"
 
 #include <stdlib.h>
 #include <string.h>
