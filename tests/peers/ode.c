@@ -41,7 +41,7 @@ static void *create(const stic_scene *scene, const peer_tuning *tuning, double i
   if (!w)
     return NULL;
   dInitODE2(0);
-  dAllocateODEDataForThread(dAllocateMaskAll);
+  dAllocateODEDataForThread((unsigned)dAllocateMaskAll);
   w->world = dWorldCreate();
   w->space = dSimpleSpaceCreate(NULL);
   w->contacts = dJointGroupCreate(0);
