@@ -161,124 +161,165 @@ static double oracle_apart_from_itself(const stic_scene *s, const hand_pose *han
   return most;
 }
 
-int main(int argc, char **argv)
+/* What is compared, and how it went. */
+typedef struct comparison {
+  const char *level;
+  bool event, verbose;
+  uint64_t seed0, count;
+  int frames;
+  double tolerance;
+  unsigned rules;
+  long rows, wrong, ambiguous, touches, unfinished;
+  double worst;
+} comparison;
+
+/* A case on its way. */
+typedef struct run {
+  uint64_t seed;
+  random_case c;
+  double size;
+  hand_pose hands[FRAMES_MAX];
+  oracle_run o;
+  stic_sim *sim;
+} run;
+
+static int read_options(comparison *k, int argc, char **argv)
 {
-  bool event = argc > 1 && !strcmp(argv[1], "event"), verbose = false;
-  uint64_t seed0 = 1, count = 100;
-  int frames = 30;
-  if (argc < 2 || (!event && strcmp(argv[1], "frame")))
+  *k = (comparison){.seed0 = 1, .count = 100, .frames = 30};
+  k->event = argc > 1 && !strcmp(argv[1], "event");
+  k->tolerance = k->event ? 1e-7 : 1e-9;
+  if (argc < 2 || (!k->event && strcmp(argv[1], "frame")))
     return fprintf(stderr, "compare frame|event ...\n"), 2;
+  k->level = argv[1];
   for (int i = 2; i < argc; i++) {
     const char *value = i + 1 < argc ? argv[i + 1] : "";
     if (!strcmp(argv[i], "--verbose"))
-      verbose = true;
+      k->verbose = true;
     else if (!strcmp(argv[i], "--seed"))
-      seed0 = strtoull(value, NULL, 10), i++;
+      k->seed0 = strtoull(value, NULL, 10), i++;
     else if (!strcmp(argv[i], "--count"))
-      count = strtoull(value, NULL, 10), i++;
+      k->count = strtoull(value, NULL, 10), i++;
     else if (!strcmp(argv[i], "--frames"))
-      frames = atoi(value), i++;
+      k->frames = atoi(value), i++;
     else
       return fprintf(stderr, "unknown: %s\n", argv[i]), 2;
   }
-  if (frames < 1 || frames > FRAMES_MAX)
+  if (k->frames < 1 || k->frames > FRAMES_MAX)
     return fprintf(stderr, "--frames from 1 to %d\n", FRAMES_MAX), 2;
-  const double tolerance = event ? 1e-7 : 1e-9;
-  unsigned rules = 0;
-  long rows = 0, wrong = 0, ambiguous = 0, touches = 0, unfinished = 0;
-  double worst = 0;
-  for (uint64_t seed = seed0; seed < seed0 + count; seed++) {
-    random_case c;
-    hand_pose hands[FRAMES_MAX];
-    oracle_run o;
-    stic_settings settings;
-    stic_sim *sim;
-    stic_error err;
-    random_any_init(&c, seed);
-    stic_settings_init(&settings);
-    settings.level = event ? STIC_LEVEL_EVENT : STIC_LEVEL_FRAME;
-    if (stic_sim_create(&c.scene, &settings, &sim, &err)) {
-      printf("seed %" PRIu64 ": %s\n", seed, err.message);
-      wrong++;
-      continue;
-    }
-    oracle_start(&o, &c.scene);
-    double size = stic_scene_size(&c.scene);
-    rng r = {seed + 77};
-    for (int i = 0; i < frames; i++) {
-      if (i)
-        random_case_move(&c, &r);
-      stic_sample sample = {
-        (int64_t)i * 32258065, {c.x, c.y, 0}, {0, 0, sin(c.phi / 2), cos(c.phi / 2)}, 1, false};
-      stic_result res;
-      stic_sim_step(sim, &sample, &res);
-      hands[i].x = c.x, hands[i].y = c.y, hands[i].phi = res.hand_theta;
-      int unfinished_before = o.report.limit + o.report.no_answer;
-      oracle_step(&o, event, i == 0, hands[i]);
-      rules |= o.report.rules;
-      rows++;
-      /* Neither claims an answer. */
-      if ((res.flags & (STIC_FLAG_NO_ANSWER | STIC_FLAG_LIMIT)) &&
-          o.report.limit + o.report.no_answer > unfinished_before) {
-        unfinished++;
-        break;
-      }
-      double pose[3] = {res.x, res.y, res.theta}, off = apart(pose, &o.state, size);
-      bool same = only_rounding_touches(&o, &res, size);
-      bool disputed = same && !same_contacts(&o, &res);
-      /* A disputed touch is one of a gap that grazes zero: rounding d of it moves the pose by sqrt(d), d = 1e-17. */
-      if (same && off <= (disputed ? fmax(tolerance, 1e-8) : tolerance)) {
-        touches += disputed;
-        if (disputed)
-          break; /* what follows may depend on it */
-        worst = fmax(worst, off);
-        continue;
-      }
-      double itself = 0;
-      if (event || verbose) {
-        double at[3] = {o.state.x, o.state.y, o.state.theta};
-        itself = oracle_apart_from_itself(&c.scene, hands, i, at, size, off / 10, event);
-      }
-      bool excused = event && itself >= off / 10 && itself > tolerance / 10;
-      if (excused)
-        ambiguous++;
-      else
-        wrong++;
-      if (!excused || verbose) {
-        printf("seed %" PRIu64 " row %d: %s%.3g sizes apart, the oracle from itself %.3g, rules %x\n", seed,
-               i, excused ? "ambiguous, " : "", off, itself, o.report.rules);
-        print_contacts(&o, &res);
-        printf("   replay: compare %s --seed %" PRIu64 " --count 1 --frames %d --verbose\n", argv[1], seed,
-               i + 1);
-      }
-      break;
-    }
-    stic_sim_destroy(sim);
+  return 0;
+}
+
+/* The two do not agree: an error, unless the oracle hardly agrees with itself there. */
+static void count_apart(comparison *k, run *w, const stic_result *res, int row, double off)
+{
+  double itself = 0;
+  if (k->event || k->verbose) {
+    double at[3] = {w->o.state.x, w->o.state.y, w->o.state.theta};
+    itself = oracle_apart_from_itself(&w->c.scene, w->hands, row, at, w->size, off / 10, k->event);
   }
+  bool excused = k->event && itself >= off / 10 && itself > k->tolerance / 10;
+  k->ambiguous += excused;
+  k->wrong += !excused;
+  if (excused && !k->verbose)
+    return;
+  printf("seed %" PRIu64 " row %d: %s%.3g sizes apart, the oracle from itself %.3g, rules %x\n", w->seed, row,
+         excused ? "ambiguous, " : "", off, itself, w->o.report.rules);
+  print_contacts(&w->o, res);
+  printf("   replay: compare %s --seed %" PRIu64 " --count 1 --frames %d --verbose\n", k->level, w->seed,
+         row + 1);
+}
+
+/* False: what follows would depend on what this row left open. */
+static bool compare_row(comparison *k, run *w, int row)
+{
+  stic_sample sample = {
+    (int64_t)row * 32258065, {w->c.x, w->c.y, 0}, {0, 0, sin(w->c.phi / 2), cos(w->c.phi / 2)}, 1, false};
+  stic_result res;
+  stic_sim_step(w->sim, &sample, &res);
+  w->hands[row].x = w->c.x, w->hands[row].y = w->c.y, w->hands[row].phi = res.hand_theta;
+  int unfinished_before = w->o.report.limit + w->o.report.no_answer;
+  oracle_step(&w->o, k->event, row == 0, w->hands[row]);
+  k->rules |= w->o.report.rules;
+  k->rows++;
+  /* Neither claims an answer. */
+  if ((res.flags & (STIC_FLAG_NO_ANSWER | STIC_FLAG_LIMIT)) &&
+      w->o.report.limit + w->o.report.no_answer > unfinished_before) {
+    k->unfinished++;
+    return false;
+  }
+  double pose[3] = {res.x, res.y, res.theta}, off = apart(pose, &w->o.state, w->size);
+  bool same = only_rounding_touches(&w->o, &res, w->size);
+  bool disputed = same && !same_contacts(&w->o, &res);
+  /* A disputed touch is one of a gap that grazes zero: rounding d of it moves the pose by sqrt(d), d = 1e-17. */
+  if (same && off <= (disputed ? fmax(k->tolerance, 1e-8) : k->tolerance)) {
+    k->touches += disputed;
+    if (!disputed)
+      k->worst = fmax(k->worst, off);
+    return !disputed;
+  }
+  count_apart(k, w, &res, row, off);
+  return false;
+}
+
+static void compare_case(comparison *k, uint64_t seed)
+{
+  static run w;
+  stic_settings settings;
+  stic_error err;
+  w.seed = seed;
+  random_any_init(&w.c, seed);
+  w.size = stic_scene_size(&w.c.scene);
+  stic_settings_init(&settings);
+  settings.level = k->event ? STIC_LEVEL_EVENT : STIC_LEVEL_FRAME;
+  if (stic_sim_create(&w.c.scene, &settings, &w.sim, &err)) {
+    printf("seed %" PRIu64 ": %s\n", seed, err.message);
+    k->wrong++;
+    return;
+  }
+  oracle_start(&w.o, &w.c.scene);
+  rng r = {seed + 77};
+  for (int i = 0; i < k->frames; i++) {
+    if (i)
+      random_case_move(&w.c, &r);
+    if (!compare_row(k, &w, i))
+      break;
+  }
+  stic_sim_destroy(w.sim);
+}
+
+/* How many of the bits that should have been met were not. */
+static int count_unmet(const char *what, const char *const *names, int count, unsigned met,
+                       unsigned exceptions)
+{
+  int unmet = 0;
+  for (int i = 0; i < count; i++) {
+    unsigned bit = 1u << i;
+    if (met & bit)
+      continue;
+    printf("%s not met: %s%s\n", what, names[i], exceptions & bit ? " (named as an exception)" : "");
+    unmet += !(exceptions & bit);
+  }
+  return unmet;
+}
+
+int main(int argc, char **argv)
+{
+  comparison k;
+  int code = read_options(&k, argc, argv);
+  if (code)
+    return code;
+  for (uint64_t seed = k.seed0; seed < k.seed0 + k.count; seed++)
+    compare_case(&k, seed);
   printf("%s: %" PRIu64
          " cases, %ld rows, %ld wrong, %ld ambiguous, %ld with a touch at rounding distance, %ld without an "
          "answer, worst agreeing %.3g sizes\n",
-         argv[1], count, rows, wrong, ambiguous, touches, unfinished, worst);
-  if (ambiguous * 20 > (long)count)
-    printf("too many ambiguous cases\n"), wrong++;
-  if (count < 100)
-    return wrong != 0;
-  /* Coverage */
-  for (int i = 0; i < ORC_R_COUNT; i++) {
-    unsigned bit = 1u << i;
-    if (rules & bit)
-      continue;
-    bool excused = (bit & (event ? NOT_AT_EVENT : NOT_AT_FRAME)) != 0;
-    printf("rule not met: %s%s\n", RULES[i], excused ? " (named as an exception)" : "");
-    wrong += !excused;
-  }
-  for (int i = 0; i < DECISION_COUNT; i++) {
-    unsigned bit = 1u << i;
-    if (inside_report.decisions & bit)
-      continue;
-    bool excused = (bit & (event ? DECISION_NOT_AT_EVENT : DECISION_NOT_AT_FRAME)) != 0;
-    printf("decision not met: %s%s\n", DECISIONS[i], excused ? " (named as an exception)" : "");
-    wrong += !excused;
-  }
-  return wrong != 0;
+         k.level, k.count, k.rows, k.wrong, k.ambiguous, k.touches, k.unfinished, k.worst);
+  if (k.ambiguous * 20 > (long)k.count)
+    printf("too many ambiguous cases\n"), k.wrong++;
+  if (k.count < 100)
+    return k.wrong != 0;
+  k.wrong += count_unmet("rule", RULES, ORC_R_COUNT, k.rules, k.event ? NOT_AT_EVENT : NOT_AT_FRAME);
+  k.wrong += count_unmet("decision", DECISIONS, DECISION_COUNT, inside_report.decisions,
+                         k.event ? DECISION_NOT_AT_EVENT : DECISION_NOT_AT_FRAME);
+  return k.wrong != 0;
 }
