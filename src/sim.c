@@ -125,11 +125,10 @@ static double hand_angle(const stic_sim *sim, const double *q)
   return angle + 2 * pi * round((sim->hand_angle - angle) / (2 * pi));
 }
 
-/* Distance in the plane from a point to the object's polygon; 0 inside. */
-static double distance_to_object(const stic_scene *scene, double x, double y, double theta, double px,
-                                 double py)
+/* Distance in the plane to the object's polygon, 0 inside, of a point at (dx, dy) from its origin. */
+static double distance_to_object(const stic_scene *scene, double dx, double dy, double theta)
 {
-  double c = cos(theta), s = sin(theta), dx = px - x, dy = py - y;
+  double c = cos(theta), s = sin(theta);
   double bx = c * dx + s * dy, by = c * dy - s * dx, best = INFINITY;
   bool inside = true;
   for (int i = 0; i < scene->vertex_count; i++) {
@@ -151,13 +150,13 @@ static void add_hand_event(stic_sim *sim, stic_event_kind kind, const stic_sampl
 /* The offsets between hand and object stay as they are at this moment. */
 static void take(stic_sim *sim, const stic_sample *sample)
 {
-  double x, y, theta, bx, by;
-  sim->core->pose(sim->state, &x, &y, &theta);
+  double dx, dy, theta, bx, by;
+  sim->core->offset(sim->state, sample->position[0], sample->position[1], &dx, &dy, &theta);
   if (sim->scene.hold == STIC_HOLD_START) {
     bx = sim->scene.holding_point[0], by = sim->scene.holding_point[1];
     sim->angle_offset = sim->z_offset = 0;
   } else {
-    double c = cos(theta), s = sin(theta), dx = sample->position[0] - x, dy = sample->position[1] - y;
+    double c = cos(theta), s = sin(theta);
     bx = c * dx + s * dy, by = c * dy - s * dx;
     sim->angle_offset = theta - sim->hand_angle;
     sim->z_offset = sim->z - sample->position[2];
@@ -169,10 +168,9 @@ static void take(stic_sim *sim, const stic_sample *sample)
 
 static bool within_reach(const stic_sim *sim, const stic_sample *sample)
 {
-  double x, y, theta;
-  sim->core->pose(sim->state, &x, &y, &theta);
-  return distance_to_object(&sim->scene, x, y, theta, sample->position[0], sample->position[1]) <=
-         sim->scene.reach;
+  double dx, dy, theta;
+  sim->core->offset(sim->state, sample->position[0], sample->position[1], &dx, &dy, &theta);
+  return distance_to_object(&sim->scene, dx, dy, theta) <= sim->scene.reach;
 }
 
 /* True if the object was taken at this very sample. */

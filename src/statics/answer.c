@@ -35,7 +35,7 @@ static real coordinates_round(const core *c)
 {
   real far = r_abs(c->p.x) + r_abs(c->p.y) + r_abs(c->hand.h.x) + r_abs(c->hand.h.y) +
              c->body.size * (1 + r_abs(c->theta));
-  return 3 * REAL_EPSILON * r_max(far, c->body.world_extent);
+  return 3 * REAL_EPSILON * r_max(far, c->body.world_extent) + 2 * c->body.start_depth;
 }
 
 /* Invariant 1, and the contacts at their anchors. False for what is not finite. */

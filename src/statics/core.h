@@ -57,8 +57,8 @@ typedef struct stic_core {
                  stic_core_report *report);
   /* Pose, contacts, forces, residual into the result; `held` false: no spring. */
   void (*result)(void *core, stic_hand hand, bool held, stic_result *result);
-  /* Current pose. */
-  void (*pose)(const void *core, double *x, double *y, double *theta);
+  /* From the body's origin to a place in the world, and the body's angle: as exact far from the world's origin. */
+  void (*offset)(const void *core, double x, double y, double *dx, double *dy, double *theta);
   /* Events written since the last call of clear_events. */
   int (*event_count)(const void *core);
   void (*clear_events)(void *core);

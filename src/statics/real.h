@@ -11,18 +11,21 @@
 
 #if STIC_REAL_BITS == 32
 typedef float real;
+typedef double wide;
 #define R(x) x##f
 #define REAL(name) name##f
 #define STIC_CORE stic_core_f32
 #define REAL_EPSILON FLT_EPSILON
 #elif STIC_REAL_BITS == 64
 typedef double real;
+typedef double wide;
 #define R(x) x
 #define REAL(name) name
 #define STIC_CORE stic_core_f64
 #define REAL_EPSILON DBL_EPSILON
 #elif STIC_REAL_BITS == 80
 typedef long double real;
+typedef long double wide;
 #define R(x) x##L
 #define REAL(name) name##l
 #define STIC_CORE stic_core_f80
@@ -30,6 +33,8 @@ typedef long double real;
 #else
 #error "STIC_REAL_BITS must be 32, 64 or 80"
 #endif
+
+/* wide: at least double, in which the world's coordinates come in and go out. */
 
 #define r_sin(x) REAL(sin)(x)
 #define r_cos(x) REAL(cos)(x)

@@ -7,9 +7,8 @@ static void record(core *c, stic_event_kind kind, int vertex, int surface_index,
   if (c->event_count >= c->event_capacity)
     return;
   double scale = kind == STIC_EVENT_SNAP ? 1 : c->unit;
-  stic_event e = {
-    c->event_time,         kind, vertex, surface_index, (double)where.x * c->unit, (double)where.y * c->unit,
-    (double)length * scale};
+  stic_event e = {c->event_time, kind, vertex, surface_index, 0, 0, (double)length * scale};
+  world_place(c, where, &e.x, &e.y);
   c->events[c->event_count++] = e;
 }
 
@@ -18,7 +17,7 @@ static real gap_noise(const core *c)
 {
   real extent =
     c->body.world_extent + r_abs(c->p.x) + r_abs(c->p.y) + r_abs(c->hand.h.x) + r_abs(c->hand.h.y);
-  return 2 * REAL_EPSILON * (extent + 2 * c->body.size);
+  return 2 * REAL_EPSILON * (extent + 2 * c->body.size) + 2 * c->body.start_depth;
 }
 
 static void relax(core *c, hand target, double t)

@@ -63,10 +63,12 @@ static void core_result(void *memory, stic_hand h, bool held, stic_result *r)
   double force_unit = held ? c->force_unit : 0;
   c->hand = hand_in(c, h);
   r->state = held ? contact_state(c) : STIC_RELEASED;
-  core_pose(c, &r->x, &r->y, &r->theta);
-  vec g = holding_point(c), f = spring_force(c);
-  r->holding_x = held ? (double)g.x * c->unit : h.x;
-  r->holding_y = held ? (double)g.y * c->unit : h.y;
+  world_place(c, c->p, &r->x, &r->y);
+  r->theta = (double)c->theta;
+  vec f = spring_force(c);
+  r->holding_x = h.x, r->holding_y = h.y;
+  if (held)
+    world_place(c, holding_point(c), &r->holding_x, &r->holding_y);
   r->force_x = (double)f.x * force_unit;
   r->force_y = (double)f.y * force_unit;
   r->moment = (double)spring_moment(c) * force_unit * c->unit;
@@ -83,8 +85,7 @@ static void core_result(void *memory, stic_hand h, bool held, stic_result *r)
     stic_contact *to = &r->contacts[i];
     to->vertex = k->vertex;
     to->surface = k->surface;
-    to->x = (double)k->place.x * c->unit;
-    to->y = (double)k->place.y * c->unit;
+    world_place(c, k->place, &to->x, &to->y);
     to->normal = (double)r_max(0, v_dot(c->forces[order[i]], s->n)) * force_unit;
     to->friction = (double)v_dot(c->forces[order[i]], s->t) * force_unit;
   }

@@ -20,9 +20,20 @@
 #include "answer.c"
 #include "row.c"
 
+static vec local_place(const core *c, double x, double y)
+{
+  return v_make((real)((wide)(x / c->unit) - c->origin[0]), (real)((wide)(y / c->unit) - c->origin[1]));
+}
+
+static void world_place(const core *c, vec place, double *x, double *y)
+{
+  *x = (double)((wide)place.x + c->origin[0]) * c->unit;
+  *y = (double)((wide)place.y + c->origin[1]) * c->unit;
+}
+
 static hand hand_in(const core *c, stic_hand h)
 {
-  hand r = {v_make((real)(h.x / c->unit), (real)(h.y / c->unit)), (real)h.phi};
+  hand r = {local_place(c, h.x, h.y), (real)h.phi};
   return r;
 }
 
@@ -39,8 +50,27 @@ static double length_unit(double size)
   return ldexp(1, exponent);
 }
 
-static void init_surfaces(body *b, const stic_scene *scene, double unit)
+/* Nearest multiple of the grid; halves away from zero, so that mirrored scenes stay mirrored. */
+static double grid_origin(double place)
 {
+  return round(place / ORIGIN_GRID) * ORIGIN_GRID;
+}
+
+/* A point of the surface. One that is given far away is exchanged for the foot of the origin: its way along the surface
+ * would cost digits. In long double, as there the products cancel. */
+static vec surface_point(const core *c, const double given[2], const double n[2])
+{
+  const long double x = (long double)(given[0] / c->unit) - c->origin[0],
+                    y = (long double)(given[1] / c->unit) - c->origin[1];
+  if (fabsl(x) <= ORIGIN_GRID && fabsl(y) <= ORIGIN_GRID)
+    return v_make((real)x, (real)y);
+  const long double off = (x * n[0] + y * n[1]) / ((long double)n[0] * n[0] + (long double)n[1] * n[1]);
+  return v_make((real)(off * n[0]), (real)(off * n[1]));
+}
+
+static void init_surfaces(core *c, const stic_scene *scene)
+{
+  body *b = &c->body;
   b->surface_count = scene->surface_count;
   for (int i = 0; i < b->surface_count; i++) {
     const stic_surface *from = &scene->surfaces[i];
@@ -49,11 +79,24 @@ static void init_surfaces(body *b, const stic_scene *scene, double unit)
     stic_normal_from_degrees(from->normal_deg, normal);
     to->n = v_make((real)normal[0], (real)normal[1]);
     to->t = v_make(to->n.y, -to->n.x);
-    to->point = v_make((real)(from->point[0] / unit), (real)(from->point[1] / unit));
+    to->point = surface_point(c, from->point, normal);
     to->mu_s = (real)from->friction.mu_static;
     to->mu_d = (real)from->friction.mu_dynamic;
-    b->world_extent = r_max(b->world_extent, r_abs(to->point.x) + r_abs(to->point.y));
+    /* One farther off has no noise but that of a vertex that is there. */
+    real extent = r_abs(to->point.x) + r_abs(to->point.y);
+    if (extent <= 2 * ORIGIN_GRID)
+      b->world_extent = r_max(b->world_extent, extent);
   }
+}
+
+/* A scene may start in a surface by the rounding of its coordinates, which may be more than that of places here. */
+static void allow_start_depth(core *c)
+{
+  real deepest = 0;
+  for (int i = 0; i < c->parts.surface_count; i++)
+    for (int v = 0; v < c->body.vertex_count; v++)
+      deepest = r_max(deepest, -gap_of(c, world_vertex(c, v), c->parts.surfaces[i]));
+  c->body.start_depth = deepest > TOLERANCE * c->body.size + gap_noise(c) ? deepest : 0;
 }
 
 static void core_init(void *memory, const stic_scene *scene, const stic_settings *settings,
@@ -78,14 +121,17 @@ static void core_init(void *memory, const stic_scene *scene, const stic_settings
   }
   b->size = (real)(size / c->unit);
   b->kappa = (real)(scene->rotational_stiffness / scene->stiffness / c->unit / c->unit);
-  init_surfaces(b, scene, c->unit);
-  c->p = v_make((real)(scene->x / c->unit), (real)(scene->y / c->unit));
+  c->origin[0] = grid_origin(scene->x / c->unit);
+  c->origin[1] = grid_origin(scene->y / c->unit);
+  init_surfaces(c, scene);
+  c->p = local_place(c, scene->x, scene->y);
   set_angle(c, (real)scene->angle);
   c->b = v_make((real)(scene->holding_point[0] / c->unit), (real)(scene->holding_point[1] / c->unit));
   /* What starts within tolerance of a surface starts in contact, stuck. */
   stic_core_report report = {0};
   c->report = &report;
   c->hand.h = c->p;
+  allow_start_depth(c);
   c->noise = gap_noise(c);
   add_touching(c);
   c->report = NULL;
@@ -130,11 +176,11 @@ static void core_follow(void *memory, stic_hand from, stic_hand to, double t_fro
   answer(c, b, &before);
 }
 
-static void core_pose(const void *memory, double *x, double *y, double *theta)
+static void core_offset(const void *memory, double x, double y, double *dx, double *dy, double *theta)
 {
   const core *c = memory;
-  *x = (double)c->p.x * c->unit;
-  *y = (double)c->p.y * c->unit;
+  *dx = (x / c->unit - c->origin[0] - (double)c->p.x) * c->unit;
+  *dy = (y / c->unit - c->origin[1] - (double)c->p.y) * c->unit;
   *theta = (double)c->theta;
 }
 
@@ -161,7 +207,7 @@ const stic_core STIC_CORE = {
   .relax = core_relax,
   .follow = core_follow,
   .result = core_result,
-  .pose = core_pose,
+  .offset = core_offset,
   .event_count = core_event_count,
   .clear_events = core_clear_events,
   .add_event = core_add_event,

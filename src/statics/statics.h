@@ -4,7 +4,10 @@
  * Scaled quantities. Lengths are in units of a power of two near the object's size, forces are divided
  * by k_p (so a force is a length: the spring's stretch), moments by k_p too (an area), and
  * kappa = k_theta / k_p. Poses therefore cannot depend on the absolute stiffness, and scaling lengths or
- * forces by powers of two leaves every bit of the computation as it was. */
+ * forces by powers of two leaves every bit of the computation as it was.
+ *
+ * Local coordinates. Places are counted from an origin near the object (core.origin), so that a scene far from the
+ * world's origin costs no digits: only what comes in and goes out, in double, has the rounding of its coordinates. */
 #ifndef STIC_STATICS_H
 #define STIC_STATICS_H
 
@@ -18,7 +21,8 @@ enum {
   SAMPLE_EVENTS_MAX = 10000,         /* RELAX calls on one hand path at level event */
   SAMPLE_WORK_MAX = 700000,          /* ... and their work, see work_done() */
   CONES_MAX = 2 * CONTACTS_MAX,
-  SLIDING_GAPS_MAX = 1024
+  SLIDING_GAPS_MAX = 1024,
+  ORIGIN_GRID = 16 /* scaled lengths: 0 is the origin of what starts within half of that */
 };
 
 /* Where judgements draw the line, in the scaled units (model: 1e-12 k_p size, 1e-14 k_p size^2). Single
@@ -52,6 +56,8 @@ typedef struct body {
   real radius;                     /* farthest vertex from the body's origin */
   surface surfaces[STIC_SURFACES_MAX];
   real world_extent; /* largest coordinate of surface points: sets rounding noise */
+  real
+    start_depth; /* what starts deeper in a surface than rounding here explains: by that of the world's coordinates */
 } body;
 
 /* A function of an angle: k + c cos x + s sin x */
@@ -114,6 +120,7 @@ typedef struct core {
   stic_settings settings;
   double unit;       /* m per scaled length, a power of two */
   double force_unit; /* N per scaled force: k_p unit */
+  double origin[2];  /* of all places here, in the world, scaled: multiples of ORIGIN_GRID */
   stic_collider *collider;
   stic_parts parts;
   near_list near;
@@ -266,7 +273,7 @@ static void follow_event(core *c, hand from, hand to, double t_from, double t_to
 
 /* ---- statics.c: SI at the border ---- */
 static hand hand_in(const core *c, stic_hand h);
-static void core_pose(const void *memory, double *x, double *y, double *theta);
+static void world_place(const core *c, vec place, double *x, double *y);
 
 static void record(core *c, stic_event_kind kind, int vertex, int surface, vec where, real length);
 
