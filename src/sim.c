@@ -93,7 +93,7 @@ stic_status stic_sim_create_parts(const stic_scene *scene, const stic_settings *
   sim->scene = *scene;
   sim->settings = *settings;
   sim->z = scene->z;
-  sim->core->init(sim->state, scene, settings, &parts, sim->collider, sim->events, STIC_EVENTS_MAX);
+  sim->core->init(sim->state, &sim->scene, settings, &parts, sim->collider, sim->events, STIC_EVENTS_MAX);
   *out = sim;
   return STIC_OK;
 }

@@ -11,8 +11,12 @@ void stic_checker_init(stic_checker *k, const stic_scene *scene, stic_precision 
   k->scene = scene;
   k->ulp = precision == STIC_F32 ? FLT_EPSILON : precision == STIC_F64 ? DBL_EPSILON : (double)LDBL_EPSILON;
   k->size = stic_scene_size(scene);
+  k->free[0] = scene->x, k->free[1] = scene->y;
   k->first = true;
 }
+
+/* Sizes between the object's start and what its coordinates are counted from, and from there to a surface's point. */
+enum { LOCAL = 64 };
 
 #define COMPLAIN(...)                                                                                        \
   do {                                                                                                       \
@@ -27,12 +31,16 @@ static double largest_of(double a, double b)
 
 double stic_checker_rounding(const stic_checker *k, const stic_result *r)
 {
-  double ulp = largest_of(k->ulp, DBL_EPSILON),
-         far = fabs(r->x) + fabs(r->y) + k->size * (1 + fabs(r->theta));
-  far += fabs(r->hand_x) + fabs(r->hand_y);
-  for (int i = 0; i < k->scene->surface_count; i++)
-    far = largest_of(far, fabs(k->scene->surfaces[i].point[0]) + fabs(k->scene->surfaces[i].point[1]));
-  return 4 * ulp * far;
+  const stic_scene *s = k->scene;
+  double turned = k->size * (1 + fabs(r->theta)),
+         far = turned + fabs(r->x) + fabs(r->y) + fabs(r->hand_x) + fabs(r->hand_y);
+  for (int i = 0; i < s->surface_count; i++)
+    far = largest_of(far, fabs(s->surfaces[i].point[0]) + fabs(s->surfaces[i].point[1]));
+  if (k->ulp <= DBL_EPSILON)
+    return 4 * DBL_EPSILON * far;
+  double moved = turned + fabs(r->x - k->free[0]) + fabs(r->y - k->free[1]) + fabs(r->hand_x - k->free[0]) +
+                 fabs(r->hand_y - k->free[1]) + LOCAL * k->size;
+  return 4 * (k->ulp * moved + DBL_EPSILON * far);
 }
 
 bool stic_same_contact(const stic_contact *a, const stic_contact *b)
@@ -250,6 +258,8 @@ void stic_checker_row(stic_checker *k, const stic_result *r, const stic_event *e
     check_anchors(k, &w, events, event_count, may_slide);
     check_rest(k, &w);
   }
+  if (r->contact_count == 0)
+    k->free[0] = r->x, k->free[1] = r->y;
   k->last = *r;
   k->last_rounding = w.rounding;
   k->first = false;

@@ -11,6 +11,7 @@ typedef struct stic_checker {
   double size; /* of the object, m */
   bool first;
   stic_result last;
+  double free[2];       /* m: where the object last was without contacts, at first its start */
   double last_rounding; /* of the row before: a pose that is kept was right within that */
   char complaint[512];  /* "" while all is well */
   /* largest values seen, in units of what is allowed */
@@ -27,8 +28,8 @@ void stic_checker_init(stic_checker *k, const stic_scene *scene, stic_precision 
 void stic_checker_row(stic_checker *k, const stic_result *r, const stic_event *events, int event_count,
                       bool may_slide);
 
-/* Rounding of the coordinates, m: 4 ulp of the largest (a row is in double, whatever it was computed in). The angle
- * rounds too, and moves a vertex by size times that. */
+/* Rounding of the coordinates, m: 4 ulp of the largest, in double as a row is, and in single precision of those from
+ * the object's start, near which it counts. The angle rounds too, and moves a vertex by size times that. */
 double stic_checker_rounding(const stic_checker *k, const stic_result *r);
 
 /* The same vertex on the same surface? */

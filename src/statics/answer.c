@@ -5,6 +5,7 @@
 
 /* What is put back. */
 typedef struct last_pose {
+  double origin[2]; /* of the places here */
   vec p, rot;
   real theta;
   int contact_count, opened_count;
@@ -14,6 +15,7 @@ typedef struct last_pose {
 
 static void keep(const core *c, last_pose *k)
 {
+  memcpy(k->origin, c->origin, sizeof k->origin);
   k->p = c->p, k->rot = c->rot, k->theta = c->theta;
   k->contact_count = c->contact_count, k->opened_count = c->opened_count;
   memcpy(k->contacts, c->contacts, (size_t)c->contact_count * sizeof k->contacts[0]);
@@ -22,6 +24,8 @@ static void keep(const core *c, last_pose *k)
 
 static void put_back(core *c, const last_pose *k)
 {
+  if (memcmp(k->origin, c->origin, sizeof k->origin) != 0)
+    set_origin(c, k->origin);
   c->p = k->p, c->rot = k->rot, c->theta = k->theta;
   c->contact_count = k->contact_count, c->opened_count = k->opened_count;
   memcpy(c->contacts, k->contacts, (size_t)k->contact_count * sizeof k->contacts[0]);

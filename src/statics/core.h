@@ -44,7 +44,7 @@ typedef struct stic_parts {
 } stic_parts;
 
 typedef struct stic_core {
-  /* Bytes that one simulation needs; init() fills them. */
+  /* Bytes that one simulation needs; init() fills them. The scene must outlive them. */
   size_t (*memory_size)(void);
   void (*init)(void *core, const stic_scene *scene, const stic_settings *settings, const stic_parts *parts,
                stic_collider *collider, stic_event *events, int event_capacity);

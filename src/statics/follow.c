@@ -376,11 +376,14 @@ static void follow_event(core *c, hand from, hand to, double t_from, double t_to
   count_slide_on(c);
 }
 
-static void follow_substeps(core *c, hand from, hand to, double t_from, double t_to)
+/* Without those up to `done` of the way; the hand is at `from` there. */
+static void follow_substeps(core *c, hand from, hand to, double t_from, double t_to, double done)
 {
   hand_path w = {from, to, v_sub(to.h, from.h), to.phi - from.phi};
   for (int i = 1; i <= c->settings.substeps; i++) {
-    double part = (double)i / c->settings.substeps;
-    relax(c, hand_at(&w, (real)part), t_from + part * (t_to - t_from));
+    double part = (double)i / c->settings.substeps, left = part - done;
+    if (part < 1 && left <= 0)
+      continue;
+    relax(c, hand_at(&w, (real)(part < 1 ? left / (1 - done) : 1)), t_from + part * (t_to - t_from));
   }
 }

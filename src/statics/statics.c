@@ -11,6 +11,7 @@
 #include "path.c"
 #include "cone.c"
 #include "hold.c"
+#include "origin.c"
 #include "slide.c"
 #include "flow.c"
 #include "judge.c"
@@ -19,17 +20,6 @@
 #include "follow.c"
 #include "answer.c"
 #include "row.c"
-
-static vec local_place(const core *c, double x, double y)
-{
-  return v_make((real)((wide)(x / c->unit) - c->origin[0]), (real)((wide)(y / c->unit) - c->origin[1]));
-}
-
-static void world_place(const core *c, vec place, double *x, double *y)
-{
-  *x = (double)((wide)place.x + c->origin[0]) * c->unit;
-  *y = (double)((wide)place.y + c->origin[1]) * c->unit;
-}
 
 static hand hand_in(const core *c, stic_hand h)
 {
@@ -50,27 +40,9 @@ static double length_unit(double size)
   return ldexp(1, exponent);
 }
 
-/* Nearest multiple of the grid; halves away from zero, so that mirrored scenes stay mirrored. */
-static double grid_origin(double place)
+/* But their points: set_origin(). */
+static void init_surfaces(body *b, const stic_scene *scene)
 {
-  return round(place / ORIGIN_GRID) * ORIGIN_GRID;
-}
-
-/* A point of the surface. One that is given far away is exchanged for the foot of the origin: its way along the surface
- * would cost digits. In long double, as there the products cancel. */
-static vec surface_point(const core *c, const double given[2], const double n[2])
-{
-  const long double x = (long double)(given[0] / c->unit) - c->origin[0],
-                    y = (long double)(given[1] / c->unit) - c->origin[1];
-  if (fabsl(x) <= ORIGIN_GRID && fabsl(y) <= ORIGIN_GRID)
-    return v_make((real)x, (real)y);
-  const long double off = (x * n[0] + y * n[1]) / ((long double)n[0] * n[0] + (long double)n[1] * n[1]);
-  return v_make((real)(off * n[0]), (real)(off * n[1]));
-}
-
-static void init_surfaces(core *c, const stic_scene *scene)
-{
-  body *b = &c->body;
   b->surface_count = scene->surface_count;
   for (int i = 0; i < b->surface_count; i++) {
     const stic_surface *from = &scene->surfaces[i];
@@ -79,24 +51,9 @@ static void init_surfaces(core *c, const stic_scene *scene)
     stic_normal_from_degrees(from->normal_deg, normal);
     to->n = v_make((real)normal[0], (real)normal[1]);
     to->t = v_make(to->n.y, -to->n.x);
-    to->point = surface_point(c, from->point, normal);
     to->mu_s = (real)from->friction.mu_static;
     to->mu_d = (real)from->friction.mu_dynamic;
-    /* One farther off has no noise but that of a vertex that is there. */
-    real extent = r_abs(to->point.x) + r_abs(to->point.y);
-    if (extent <= 2 * ORIGIN_GRID)
-      b->world_extent = r_max(b->world_extent, extent);
   }
-}
-
-/* A scene may start in a surface by the rounding of its coordinates, which may be more than that of places here. */
-static void allow_start_depth(core *c)
-{
-  real deepest = 0;
-  for (int i = 0; i < c->parts.surface_count; i++)
-    for (int v = 0; v < c->body.vertex_count; v++)
-      deepest = r_max(deepest, -gap_of(c, world_vertex(c, v), c->parts.surfaces[i]));
-  c->body.start_depth = deepest > TOLERANCE * c->body.size + gap_noise(c) ? deepest : 0;
 }
 
 static void core_init(void *memory, const stic_scene *scene, const stic_settings *settings,
@@ -106,6 +63,7 @@ static void core_init(void *memory, const stic_scene *scene, const stic_settings
   core *c = memory;
   memset(c, 0, sizeof *c);
   double size = stic_scene_size(scene);
+  c->scene = scene;
   c->settings = *settings;
   c->unit = length_unit(size);
   c->force_unit = scene->stiffness * c->unit;
@@ -121,17 +79,15 @@ static void core_init(void *memory, const stic_scene *scene, const stic_settings
   }
   b->size = (real)(size / c->unit);
   b->kappa = (real)(scene->rotational_stiffness / scene->stiffness / c->unit / c->unit);
-  c->origin[0] = grid_origin(scene->x / c->unit);
-  c->origin[1] = grid_origin(scene->y / c->unit);
-  init_surfaces(c, scene);
+  init_surfaces(b, scene);
+  set_origin_near(c, scene->x / c->unit, scene->y / c->unit);
   c->p = local_place(c, scene->x, scene->y);
   set_angle(c, (real)scene->angle);
   c->b = v_make((real)(scene->holding_point[0] / c->unit), (real)(scene->holding_point[1] / c->unit));
   /* What starts within tolerance of a surface starts in contact, stuck. */
   stic_core_report report = {0};
   c->report = &report;
-  c->hand.h = c->p;
-  allow_start_depth(c);
+  b->start_depth = depth_now(c);
   c->noise = gap_noise(c);
   add_touching(c);
   c->report = NULL;
@@ -153,7 +109,9 @@ static void core_relax(void *memory, stic_hand h, double t, stic_core_report *re
   c->flow_steps = c->flow_solves = c->stages = 0;
   c->sliding = false;
   last_pose before;
+  come_along(c);
   keep(c, &before);
+  skip_way(c, &(stic_hand){0}, h);
   relax(c, hand_in(c, h), t);
   c->window_open = c->happened;
   answer(c, c->hand, &before);
@@ -165,13 +123,15 @@ static void core_follow(void *memory, stic_hand from, stic_hand to, double t_fro
   core *c = memory;
   c->report = report;
   c->flow_steps = c->flow_solves = c->stages = 0;
-  hand a = hand_in(c, from), b = hand_in(c, to);
   last_pose before;
+  come_along(c);
   keep(c, &before);
+  double done = skip_way(c, &from, to);
+  hand a = hand_in(c, from), b = hand_in(c, to);
   switch (c->settings.level) {
   case STIC_LEVEL_FRAME: relax(c, b, t_to); break;
-  case STIC_LEVEL_SUBSTEP: follow_substeps(c, a, b, t_from, t_to); break;
-  case STIC_LEVEL_EVENT: follow_event(c, a, b, t_from, t_to); break;
+  case STIC_LEVEL_SUBSTEP: follow_substeps(c, a, b, t_from, t_to, done); break;
+  case STIC_LEVEL_EVENT: follow_event(c, a, b, t_from + done * (t_to - t_from), t_to); break;
   }
   answer(c, b, &before);
 }

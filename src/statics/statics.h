@@ -21,8 +21,7 @@ enum {
   SAMPLE_EVENTS_MAX = 10000,         /* RELAX calls on one hand path at level event */
   SAMPLE_WORK_MAX = 700000,          /* ... and their work, see work_done() */
   CONES_MAX = 2 * CONTACTS_MAX,
-  SLIDING_GAPS_MAX = 1024,
-  ORIGIN_GRID = 16 /* scaled lengths: 0 is the origin of what starts within half of that */
+  SLIDING_GAPS_MAX = 1024
 };
 
 /* Where judgements draw the line, in the scaled units (model: 1e-12 k_p size, 1e-14 k_p size^2). Single
@@ -116,11 +115,12 @@ typedef struct balance {
 } balance;
 
 typedef struct core {
+  const stic_scene *scene;
   body body;
   stic_settings settings;
   double unit;       /* m per scaled length, a power of two */
   double force_unit; /* N per scaled force: k_p unit */
-  double origin[2];  /* of all places here, in the world, scaled: multiples of ORIGIN_GRID */
+  double origin[2];  /* of all places here, in the world, scaled: see origin.c */
   stic_collider *collider;
   stic_parts parts;
   near_list near;
@@ -164,6 +164,10 @@ typedef struct core {
   sliding_gap gaps[SLIDING_GAPS_MAX]; /* of one slide_on() */
 } core;
 
+/* ---- origin.c: where places are counted from ---- */
+static vec local_place(const core *c, double x, double y);
+static void world_place(const core *c, vec place, double *x, double *y);
+
 /* ---- spring.c: hand and object joined by a virtual spring [2, 4] ---- */
 static vec rotate(vec rot, vec v);
 static vec world_vertex(const core *c, int vertex);
@@ -199,6 +203,7 @@ typedef struct touch {
 } touch;
 
 static real rounding_here(const core *c);
+static real gap_noise(const core *c); /* relax.c */
 static void near_update(core *c, real travel);
 static bool next_near(const core *c, near_pair *k);
 static bool is_contact(const core *c, int vertex, int on);
@@ -273,7 +278,6 @@ static void follow_event(core *c, hand from, hand to, double t_from, double t_to
 
 /* ---- statics.c: SI at the border ---- */
 static hand hand_in(const core *c, stic_hand h);
-static void world_place(const core *c, vec place, double *x, double *y);
 
 static void record(core *c, stic_event_kind kind, int vertex, int surface, vec where, real length);
 

@@ -37,7 +37,7 @@ static void read_line(const char *out, const char *name, long *rows, long *failu
 static void cases_go_out_and_come_back(void **state)
 {
   static const char *const sweeps[] = {"stiffness", "friction", "k_p-mu", "shape", "polygon", "distance",
-                                       "surfaces",  "hand",     "press",  "exact", "still"};
+                                       "far",       "surfaces", "hand",   "press", "exact",   "still"};
   char scene[300], trace[300];
 
   (void)state;

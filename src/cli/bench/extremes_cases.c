@@ -258,6 +258,87 @@ static bool surfaces(stic_extreme *e, int index, int frames)
   return i < ANGLE_COUNT;
 }
 
+/* ---- far from the world's origin ------------------------------------------------------------------- */
+
+/* Through (x, y), but given by a point `along` its tangent. */
+static void add_surface_from_afar(stic_extreme *e, double x, double y, double normal_deg, double along)
+{
+  double n[2];
+
+  stic_normal_from_degrees(normal_deg, n);
+  add_surface(e, x + along * n[1], y - along * n[0], normal_deg);
+}
+
+/* From far away to where the tour begins, in `pinned[0]` even steps, and on tour. */
+static void carried(stic_extreme *e, int i, const stic_result *last)
+{
+  const int steps = (int)e->pinned[0];
+  const double left = i < steps ? e->parameter * (steps - i) / steps : 0;
+
+  tour(e, i < steps ? 0 : i - steps + 1, last);
+  e->x += 0.8 * left, e->y += 0.6 * left;
+}
+
+/* A tour at the wall here, one mirrored at the wall `parameter` away, one here. */
+static void there_and_back(stic_extreme *e, int i, const stic_result *last)
+{
+  tour(e, i % TOUR_FRAMES, last);
+  if (i / TOUR_FRAMES == 1)
+    e->x = e->parameter - e->x, e->phi = -e->phi;
+}
+
+/* A slot of 1.1 box heights, through (1.2, 0). */
+static void slot_from_afar(stic_extreme *e, double way, double tilt_deg)
+{
+  const double wide = 2.2 * HALF_HEIGHT;
+  double n[2];
+
+  stic_normal_from_degrees(90 + tilt_deg, n);
+  e->move = slot_tour;
+  e->parameter = wide;
+  e->scene.angle = tilt_deg * STIC_PI / 180;
+  add_surface_from_afar(e, 1.2, 0, 90 + tilt_deg, -way);
+  add_surface_from_afar(e, 1.2 + wide * n[0], wide * n[1], 270 + tilt_deg, way);
+  start_at(e, 1.2 + wide / 2 * n[0], wide / 2 * n[1]);
+}
+
+/* b: 0 surfaces given near the world's origin, 1 slopes, 2 a slot, 3 a tilted one, 4 with walls at the world's origin and beyond;
+ * at the origin, where the object comes 5 from afar in steps, 6 at once; 7 there and back. */
+static bool far_away(stic_extreme *e, int index, int frames)
+{
+  enum { DISTANCES = 12, KINDS = 8 };
+  const int i = index / KINDS, kind = index % KINDS;
+  const double way = pow(10, i + 1);
+
+  (void)frames;
+  standard_case(e, 1);
+  e->a = way;
+  e->b = kind;
+  start_at(e, 1.2, 0.8);
+  if (kind < 5)
+    e->origin[0] = 0.8 * way, e->origin[1] = 0.6 * way;
+  if (kind == 2 || kind == 3) {
+    slot_from_afar(e, way, kind == 2 ? 0 : 15);
+    return i < DISTANCES;
+  }
+  start_at(e, 1.2 + (kind == 5 || kind == 6 ? 0.8 * way : 0), 0.8 + (kind == 5 || kind == 6 ? 0.6 * way : 0));
+  add_surface_from_afar(e, 0, 0, kind == 1 ? 105 : 90, kind < 2 ? -0.8 * way : 0);
+  add_surface_from_afar(e, kind == 4 ? -0.8 * way : 0, 0, kind == 1 ? 10 : 0, kind < 2 ? 0.6 * way : 0);
+  e->parameter = way;
+  if (kind == 4) {
+    add_surface(e, 0, way, 270);
+  } else if (kind == 7) {
+    add_surface(e, way, 0, 180);
+    e->move = there_and_back;
+    e->frames = 3 * TOUR_FRAMES;
+  } else if (kind > 4) {
+    e->pinned[0] = kind == 5 ? 12 : 1;
+    e->move = carried;
+    e->frames = TOUR_FRAMES - 1 + (int)e->pinned[0];
+  }
+  return i < DISTANCES;
+}
+
 /* ---- hands ------------------------------------------------------------------------------------------- */
 
 /* Between its rest on the floor and a place `parameter` units away, each time in another direction. */
@@ -466,6 +547,7 @@ const stic_sweep stic_sweeps[] = {
   {"shape", "size, m", "aspect ratio", 7, shape},
   {"polygon", "vertices", "kind", 1, polygon},
   {"distance", "size, m", "distance from the origin, sizes", 5, distance},
+  {"far", "distance, sizes", "kind", 1, far_away},
   {"surfaces", "angle, rad", "kind", 1, surfaces},
   {"hand", "extent", "kind", 1, hands},
   {"press", "depth, sizes", "mu_s", 3, pressing},
