@@ -7,7 +7,9 @@
 enum {
   ORIGIN_GRID = 16, /* 0 is the origin of what starts within half of that */
   FAR_AWAY = 64,    /* from the origin */
-  LONG_WAY = 1024
+  LONG_WAY = 128,
+  SHORT_WAY = 32,
+  STRETCHES_MAX = 8
 };
 
 static vec local_place(const core *c, double x, double y)
@@ -87,25 +89,26 @@ static void come_along(core *c)
   }
 }
 
-/* A stretch of a long free way that nothing blocks: up to where the rounding of its length is small beside what is left.
- * Returns the part gone, 0 for none, and `from` becomes where the hand is then. */
+/* A stretch of a long free way: to shortly before its end or the first touch, so that the rounding of its length is small
+ * beside what is left. Returns the part gone, 0 for none, and `from` becomes where the hand is then. */
 static double skip_stretch(core *c, stic_hand *from, stic_hand to)
 {
   const double way[2] = {to.x - from->x, to.y - from->y}, length = hypot(way[0], way[1]) / c->unit;
   if (!(length > LONG_WAY))
     return 0;
-  const double part = 1 - fmax(2 * ORIGIN_GRID, 32 * (double)REAL_EPSILON * length) / length;
   const double old[2] = {c->origin[0], c->origin[1]};
   const vec p = c->p, travel = v_sub(local_place(c, to.x, to.y), holding_point(c));
-  const real theta = c->theta, turn = c->body.kappa > 0 ? (real)part * ((real)to.phi - theta) : 0;
+  const real theta = c->theta, turn = c->body.kappa > 0 ? (real)to.phi - theta : 0;
   c->hand.h = c->p;
   c->noise = gap_noise(c);
-  if (first_touch_moving(c, v_scale(travel, (real)part), turn).at < R_HUGE)
+  const double open = fmin(1, (double)first_touch_moving(c, travel, turn).at) * length,
+               part = (open - fmax(SHORT_WAY, 32 * (double)REAL_EPSILON * open)) / length;
+  if (!(part * length > SHORT_WAY))
     return 0;
   const stic_hand at = {from->x + part * way[0], from->y + part * way[1],
                         from->phi + part * (to.phi - from->phi)};
   set_origin_near(c, at.x / c->unit, at.y / c->unit);
-  set_angle(c, theta + turn);
+  set_angle(c, theta + (real)part * turn);
   place_holding_point(c, local_place(c, at.x, at.y));
   if (depth_now(c) > 0) { /* rounding hid it */
     set_origin(c, old);
@@ -123,10 +126,12 @@ static double skip_way(core *c, stic_hand *from, stic_hand to)
   if (c->contact_count > 0)
     return 0;
   stic_hand at = *from;
-  double done = 0, part;
+  double done = 0, part = 1;
   world_place(c, holding_point(c), &at.x, &at.y);
-  while ((part = skip_stretch(c, &at, to)) > 0)
+  for (int i = 0; i < STRETCHES_MAX && part > 0; i++) {
+    part = skip_stretch(c, &at, to);
     done += (1 - done) * part;
+  }
   if (done > 0)
     *from = at;
   return done;
