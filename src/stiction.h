@@ -224,6 +224,7 @@ typedef enum stic_level {
   STIC_LEVEL_EVENT    /* wherever something happens on the path, located to 1e-12 of the interval */
 } stic_level;
 
+/* Of the statics' arithmetic, which counts places from near the object. What goes in and out is double. */
 typedef enum stic_precision { STIC_F32, STIC_F64, STIC_F80 } stic_precision;
 
 typedef struct stic_settings {
