@@ -51,10 +51,23 @@ static void add_event(const stic_event *e)
   add_double(e->x), add_double(e->y), add_double(e->length);
 }
 
+enum { SEEDS = 24, FAR_SEEDS = 8 }; /* far from the world's origin after those near it */
+
+/* The whole scene, by powers of ten of m. Returns how far. */
+static double move_away(random_case *c, uint64_t seed)
+{
+  double way = seed > SEEDS ? pow(10, (double)(seed - SEEDS)) : 0;
+  for (int i = 0; i < c->scene.surface_count; i++)
+    c->scene.surfaces[i].point[0] += way, c->scene.surfaces[i].point[1] -= way;
+  c->scene.x += way, c->scene.y -= way;
+  return way;
+}
+
 static int run(uint64_t seed, stic_level level, stic_precision precision, int flip)
 {
   random_case c;
   random_case_init(&c, seed);
+  double way = move_away(&c, seed);
   stic_settings settings;
   stic_sim *sim;
   stic_error err;
@@ -66,8 +79,11 @@ static int run(uint64_t seed, stic_level level, stic_precision precision, int fl
   for (int i = 0; i < 40; i++) {
     if (i)
       random_case_move(&c, &r);
-    stic_sample sample = {
-      (int64_t)i * 32258065, {c.x, c.y, 0.001 * i}, {0, 0, sin(c.phi / 2), cos(c.phi / 2)}, 1, false};
+    stic_sample sample = {(int64_t)i * 32258065,
+                          {c.x + way, c.y - way, 0.001 * i},
+                          {0, 0, sin(c.phi / 2), cos(c.phi / 2)},
+                          1,
+                          false};
     if (flip && i == 20) {
       uint64_t bits;
       memcpy(&bits, &sample.position[1], sizeof bits);
@@ -93,7 +109,7 @@ int main(int argc, char **argv)
   int parts = argc > 1 && !strcmp(argv[1], "parts");
   for (int precision = STIC_F32; precision <= STIC_F80; precision++)
     for (int event = 0; event < 2; event++) {
-      for (uint64_t seed = 1; seed <= 24; seed++)
+      for (uint64_t seed = 1; seed <= SEEDS + FAR_SEEDS; seed++)
         failed |= run(seed, event ? STIC_LEVEL_EVENT : STIC_LEVEL_FRAME, (stic_precision)precision,
                       flip && seed == 12 && event && precision == STIC_F64);
       if (parts)
