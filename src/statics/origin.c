@@ -9,7 +9,7 @@ enum {
   FAR_AWAY = 64,    /* from the origin */
   LONG_WAY = 128,
   SHORT_WAY = 32,
-  STRETCHES_MAX = 8
+  STRETCHES_MAX = 64
 };
 
 static vec local_place(const core *c, double x, double y)
