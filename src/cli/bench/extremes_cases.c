@@ -296,7 +296,7 @@ static void slot_from_afar(stic_extreme *e, double way, double tilt_deg)
   stic_normal_from_degrees(90 + tilt_deg, n);
   e->move = slot_tour;
   e->parameter = wide;
-  e->scene.angle = tilt_deg * STIC_PI / 180;
+  e->scene.angle = tilt_deg * STIC_RAD_PER_DEG;
   add_surface_from_afar(e, 1.2, 0, 90 + tilt_deg, -way);
   add_surface_from_afar(e, 1.2 + wide * n[0], wide * n[1], 270 + tilt_deg, way);
   start_at(e, 1.2 + wide / 2 * n[0], wide / 2 * n[1]);
