@@ -280,9 +280,11 @@ static void range_of(const stic_figure *f, quantity of, double range[2])
   }
 }
 
+/* By a part of itself, but so far that its numbers need no more digits than there is room for. */
 static void widen(double range[2], double part, double least)
 {
-  const double more = fmax(part * (range[1] - range[0]), least);
+  const double size = fmax(fabs(range[0]), fabs(range[1])), span = range[1] - range[0];
+  const double more = span > 0 ? fmax(part * span, fmax(least, 1e-4 * size)) : fmax(0.05 * size, 1e-3);
 
   range[0] -= more;
   range[1] += more;
@@ -300,6 +302,12 @@ static void set_tics(const char *axis, const double range[2], int most, stic_out
   const double step = decade * (rough > 5 * decade ? 10 : rough > 2 * decade ? 5 : rough > decade ? 2 : 1);
 
   stic_outfile_print(out, "set %stics %.9g\n", axis, step);
+}
+
+/* How curves are drawn: a line through one point is not to be seen. */
+static const char *curves(const stic_figure *f)
+{
+  return row_count(f) > 1 ? "lines" : "points pt 7 ps 0.5";
 }
 
 /* Names of axes and entries of the key stand at fixed places, whatever the numbers need. */
@@ -370,15 +378,21 @@ static void script_plane(const stic_figure *f, double bottom, stic_outfile *out)
   stic_outfile_print(
     out,
     "set format x '%%g'\n"
-    "plot data index %d using 2:3 with lines lt 1 title 'hand', data index %d using 2:3 with lines lt 2 title 'object', "
+    "plot data index %d using 2:3 with %s lt 1 title 'hand', data index %d using 2:3 with %s lt 2 title 'object', "
     "data index %d using 1:2 with points lt 8 title 'rest after a slip'\n",
-    BLOCK_HAND, BLOCK_OBJECT, BLOCK_LANDINGS);
+    BLOCK_HAND, curves(f), BLOCK_OBJECT, curves(f), BLOCK_LANDINGS);
   forget(out);
+}
+
+/* Of the time axis, s; a single row has a second of its own. */
+static double end_of(const stic_figure *f)
+{
+  return row_count(f) > 1 ? row_at(f, row_count(f) - 1)->t : row_at(f, 0)->t + 1;
 }
 
 static void time_axis(const stic_figure *f, stic_outfile *out)
 {
-  const double t[2] = {row_at(f, 0)->t, fmax(row_at(f, row_count(f) - 1)->t, row_at(f, 0)->t + 1e-9)};
+  const double t[2] = {row_at(f, 0)->t, end_of(f)};
 
   set_range("x", t, out);
   set_tics("x", t, 7, out);
@@ -401,9 +415,9 @@ static void script_time_panel(const stic_figure *f, double bottom, const char *l
   axis_name(f, label, 2.2, bottom + TIME_PANEL / 2, true, out);
   stic_outfile_print(
     out,
-    "plot data index %d using 1:%d with lines lt 1 title 'hand', data index %d using 1:%d with lines lt 2 title 'object', " SLIP_MARKS
+    "plot data index %d using 1:%d with %s lt 1 title 'hand', data index %d using 1:%d with %s lt 2 title 'object', " SLIP_MARKS
     "\n",
-    BLOCK_HAND, column, BLOCK_OBJECT, column);
+    BLOCK_HAND, column, curves(f), BLOCK_OBJECT, column, curves(f));
   forget(out);
 }
 
@@ -461,9 +475,9 @@ static void script_force_panel(const stic_figure *f, double bottom, int n, stic_
                        "data index %d using 1:(-mu_d*$2) with lines lt 6 title 'dynamic limit', ",
                        block, block, block, block);
   stic_outfile_print(out,
-                     "data index %d using 1:2 with lines lt 3 title 'normal force', "
-                     "data index %d using 1:3 with lines lt 4 title 'friction', " SLIP_MARKS "\n",
-                     block, block);
+                     "data index %d using 1:2 with %s lt 3 title 'normal force', "
+                     "data index %d using 1:3 with %s lt 4 title 'friction', " SLIP_MARKS "\n",
+                     block, curves(f), block, curves(f));
   forget(out);
 }
 
@@ -471,7 +485,7 @@ static void script_force_panel(const stic_figure *f, double bottom, int n, stic_
 static void script_states(const stic_figure *f, stic_outfile *out)
 {
   static const int grey[] = {0xd0, 0xf0, 0xd9, 0xc4, 0xb2, 0xa0, 0x8c};
-  const double span = row_at(f, row_count(f) - 1)->t - row_at(f, 0)->t;
+  const double span = end_of(f) - row_at(f, 0)->t;
   int64_t start = 0;
   int number = 1;
 
@@ -483,7 +497,7 @@ static void script_states(const stic_figure *f, stic_outfile *out)
   axis_name(f, "state", LEFT / 2 + 1, BOTTOM + STRIP / 2, false, out);
   for (int64_t i = 1; i <= row_count(f); i++) {
     const int state = row_at(f, start)->state;
-    const double from = row_at(f, start)->t, to = row_at(f, i < row_count(f) ? i : i - 1)->t;
+    const double from = row_at(f, start)->t, to = i < row_count(f) ? row_at(f, i)->t : end_of(f);
 
     if (i < row_count(f) && row_at(f, i)->state == state)
       continue;

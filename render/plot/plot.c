@@ -33,6 +33,11 @@ bool stic_plot_has_state(const stic_plot *p, int figure)
   return false;
 }
 
+bool stic_plot_has_forces(const stic_plot *p)
+{
+  return p->surface_count > 0;
+}
+
 /* The rows to draw: those of the given stretch, or from the first to the last of the figure's state. */
 static void choose_rows(const stic_plot *p, const stic_plot_settings *s, int64_t *from, int64_t *to)
 {
@@ -74,6 +79,10 @@ static stic_status name_parts(const char *path, workshop *w, stic_error *err)
     return stic_error_set(err, STIC_USAGE, path, 0, "a plot's name has to end in .svg, .pdf or .png");
   memcpy(w->stem, name, (size_t)(dot - name));
   w->stem[dot - name] = '\0';
+  for (char *c = w->stem; *c; c++) {
+    if ((unsigned char)*c < ' ')
+      *c = '_'; /* a line's end would end a command of gnuplot's */
+  }
   return STIC_OK;
 }
 
@@ -211,6 +220,18 @@ static stic_status make(const stic_figure *f, const workshop *w, bool keep, stic
   return status;
 }
 
+static stic_status no_rows(const stic_plot *p, const stic_plot_settings *s, stic_error *err)
+{
+  char from[40] = "", to[40] = "";
+
+  if (s->from > -STIC_PLOT_EVER)
+    snprintf(from, sizeof from, " from %.9g s", s->from);
+  if (s->to < STIC_PLOT_EVER)
+    snprintf(to, sizeof to, " to %.9g s", s->to);
+  return stic_error_set(err, STIC_USAGE, NULL, 0, "the log has no rows%s%s; it goes from %.9g s to %.9g s",
+                        from, to, p->rows[0].t, p->rows[p->count - 1].t);
+}
+
 stic_status stic_plot_draw(const stic_plot *p, const stic_plot_settings *s, const char *path, stic_error *err)
 {
   stic_figure f = {.plot = p, .number = s->figure};
@@ -221,10 +242,8 @@ stic_status stic_plot_draw(const stic_plot *p, const stic_plot_settings *s, cons
   assert(s->figure >= STIC_FIGURE_FIRST && s->figure <= STIC_FIGURE_LAST);
   choose_rows(p, s, &f.from, &f.to);
   if (status == STIC_OK && f.from == f.to)
-    status = stic_error_set(err, STIC_USAGE, NULL, 0,
-                            "the log has no rows from %g s to %g s; it goes from %g s to %g s", s->from,
-                            s->to, p->rows[0].t, p->rows[p->count - 1].t);
-  if (status == STIC_OK && (s->figure == 10 || s->figure == 12) && p->surface_count == 0)
+    status = no_rows(p, s, err);
+  if (status == STIC_OK && (s->figure == 10 || s->figure == 12) && !stic_plot_has_forces(p))
     status = stic_error_set(err, STIC_USAGE, NULL, 0,
                             "figure %d shows forces, and nothing is touched in this log", s->figure);
   if (status != STIC_OK)

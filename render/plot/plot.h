@@ -27,8 +27,13 @@ void stic_plot_set_scene(stic_plot *plot, const stic_scene *scene);
 /* Whether the log has rows of the state that a figure is about; without, the figure shows all of the log. */
 bool stic_plot_has_state(const stic_plot *plot, int figure);
 
+/* Whether anything is touched in the log; without, there are no forces to show in figures 10 and 12. */
+bool stic_plot_has_forces(const stic_plot *plot);
+
 /* Whether rows have more contacts than a log lists: forces are then those of the listed ones. */
 bool stic_plot_is_cut(const stic_plot *plot);
+
+#define STIC_PLOT_EVER 1e300 /* s; as `to`, and negative as `from`: no limit */
 
 /* What to draw. */
 typedef struct stic_plot_settings {

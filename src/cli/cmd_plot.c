@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #define OVERRIDES_MAX 64 /* as many as a log's reader keeps */
 
@@ -64,8 +65,8 @@ static stic_status parse_stretch(plot_run *r, stic_error *err)
   const plot_options *o = r->options;
   stic_status status;
 
-  r->settings.from = o->to ? -1e300 : 1;
-  r->settings.to = o->from ? 1e300 : 0;
+  r->settings.from = o->to ? -STIC_PLOT_EVER : 1;
+  r->settings.to = o->from ? STIC_PLOT_EVER : 0;
   status = parse_seconds("from", o->from, &r->settings.from, err);
   if (status == STIC_OK)
     status = parse_seconds("to", o->to, &r->settings.to, err);
@@ -82,8 +83,10 @@ static void choose_figures(plot_run *r)
 
   for (int i = STIC_FIGURE_FIRST; !r->chosen && i <= STIC_FIGURE_LAST; i++)
     any |= r->figures[i] = stic_plot_has_state(r->plot, i);
-  if (!any)
-    r->figures[9] = r->figures[10] = true;
+  if (!any) {
+    r->figures[9] = true;
+    r->figures[10] = stic_plot_has_forces(r->plot);
+  }
   for (int i = STIC_FIGURE_FIRST; i <= STIC_FIGURE_LAST; i++) {
     if (r->figures[i] && !stic_plot_has_state(r->plot, i) && r->settings.from > r->settings.to)
       stic_cli_say("the log has no %s contact: figure %d shows all of it",
@@ -152,20 +155,13 @@ static int draw(plot_run *r, int figure, const char *path, stic_error *err)
   return STIC_OK;
 }
 
-static int draw_one(plot_run *r, stic_error *err)
+static int draw_one(plot_run *r, const char *path, stic_error *err)
 {
-  int figure = 0;
+  int figure = STIC_FIGURE_FIRST;
 
-  for (int i = STIC_FIGURE_FIRST; i <= STIC_FIGURE_LAST; i++) {
-    if (r->figures[i] && r->chosen)
-      figure = i;
-  }
-  if (figure == 0) {
-    stic_error_set(err, STIC_USAGE, NULL, 0,
-                   "--out %.200s is one picture; expected --figure 9, 10, 11 or 12 with it", r->options->out);
-    return stic_cli_fail(err);
-  }
-  return draw(r, figure, r->options->out, err);
+  while (!r->figures[figure])
+    figure++;
+  return draw(r, figure, path, err);
 }
 
 static int draw_into(plot_run *r, const char *folder, stic_error *err)
@@ -173,9 +169,10 @@ static int draw_into(plot_run *r, const char *folder, stic_error *err)
   static const char *const formats[] = {"svg", "pdf", "png"};
   const char *only = r->options->format;
   char path[4096];
+  const bool made = mkdir(folder, 0777) == 0;
   int code = STIC_OK;
 
-  if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
+  if (!made && errno != EEXIST) {
     stic_error_set(err, STIC_CANNOT_WRITE, folder, 0, "cannot make the folder: %s", strerror(errno));
     return stic_cli_fail(err);
   }
@@ -187,25 +184,40 @@ static int draw_into(plot_run *r, const char *folder, stic_error *err)
       code = draw(r, i, path, err);
     }
   }
+  if (made)
+    rmdir(folder); /* if it is still empty */
   return code == STIC_OK && stic_cli_signal() != 0 ? STIC_EXIT_SIGNAL + stic_cli_signal() : code;
+}
+
+/* What --out is, and whether the other options go with it. */
+static stic_status check_kind(const plot_run *r, const char *out, stic_error *err)
+{
+  const char *format = r->options->format;
+
+  if (format && strcmp(format, "svg") != 0 && strcmp(format, "pdf") != 0 && strcmp(format, "png") != 0)
+    return stic_error_set(err, STIC_USAGE, NULL, 0, "--format %.40s: expected svg, pdf or png", format);
+  if (has_ending(out) && format)
+    return stic_error_set(
+      err, STIC_USAGE, NULL, 0,
+      "--out %.200s is one picture, of the format that its name says; --format is for a folder", out);
+  if (has_ending(out) && !r->chosen)
+    return stic_error_set(err, STIC_USAGE, NULL, 0,
+                          "--out %.200s is one picture; expected --figure 9, 10, 11 or 12 with it", out);
+  return STIC_OK;
 }
 
 static int plot_log(plot_run *r, const char *log, stic_error *err)
 {
-  const char *out = r->options->out ? r->options->out : "plots", *format = r->options->format;
+  const char *out = r->options->out ? r->options->out : "plots";
 
-  if (format && strcmp(format, "svg") != 0 && strcmp(format, "pdf") != 0 && strcmp(format, "png") != 0) {
-    stic_error_set(err, STIC_USAGE, NULL, 0, "--format %.40s: expected svg, pdf or png", format);
-    return stic_cli_fail(err);
-  }
-  if (parse_figure(r, err) != STIC_OK || parse_stretch(r, err) != STIC_OK ||
-      stic_cli_check_paths(&log, 1, &out, 1, err) != STIC_OK ||
+  if (parse_figure(r, err) != STIC_OK || check_kind(r, out, err) != STIC_OK ||
+      parse_stretch(r, err) != STIC_OK || stic_cli_check_paths(&log, 1, &out, 1, err) != STIC_OK ||
       stic_plot_read(log, &r->plot, err) != STIC_OK || find_friction(r, err) != STIC_OK)
     return stic_cli_fail(err);
   if (stic_plot_is_cut(r->plot))
     stic_cli_say("rows with more than four contacts show the forces of the four that the log lists");
   choose_figures(r);
-  return has_ending(out) ? draw_one(r, err) : draw_into(r, out, err);
+  return has_ending(out) ? draw_one(r, out, err) : draw_into(r, out, err);
 }
 
 int stic_cmd_plot(int argc, const char **argv)

@@ -99,6 +99,26 @@ def choices(log):
         equal("a log from standard input", run("plot", "-", "--figure", "9", "--out", png, stdin=file).returncode, 0)
 
 
+def short_logs(log):
+    """One row is a point, and where nothing is touched there are no forces to show."""
+    head, states = read(log).split("\nt,state", 1)
+    lines = states.split("\n")
+    free = next(line for line in lines if ",free," in line)
+    one = write(os.path.join(folder, "one.csv"), f"{head}\nt,state{lines[0]}\n{free}\n")
+    out = os.path.join(folder, "one")
+    equal("one row", run("plot", one, "--out", out, "--format", "svg").returncode, 0)
+    equal("without forces", os.listdir(out), ["figure-9.svg"])
+    svg = read(os.path.join(out, "figure-9.svg"))
+    equal("points of hand and object, in the plane and over time", svg.count("<use xlink:href='#gpPt6'"), 8)
+    texts = " ".join("".join(ElementTree.fromstring(svg).itertext()).split())
+    check("and its state", "free" in texts, texts)
+    ticks = re.findall(r"-?\d+\.\d+", texts)
+    check("its numbers are short", all(len(n) <= 7 for n in ticks), ticks)
+    lines_end = os.path.join(folder, "a\nb.svg")
+    equal("a line's end in a name", run("plot", log, "--figure", "9", "--out", lines_end).returncode, 0)
+    check("is kept", os.path.exists(lines_end))
+
+
 def long_log():
     """An hour is thinned."""
     hand = write(os.path.join(folder, "long.csv"), trace(600, 31))
@@ -129,10 +149,12 @@ def refusals(log):
         ("no argument", (), 2, "LOG"),
         ("another figure", (log, "--figure", "13"), 2, "9, 10, 11, 12 or all"),
         ("one file for all", (log, "--out", good), 2, "--figure"),
+        ("two formats", (log, "--figure", "11", "--out", good, "--format", "pdf"), 2, "--format"),
         ("another format", (log, "--format", "gif"), 2, "svg, pdf or png"),
         ("no time", (log, "--from", "soon", "--figure", "9", "--out", good), 2, "seconds"),
         ("a stretch backwards", (log, "--from", "3", "--to", "2", "--figure", "9", "--out", good), 2, "earlier"),
-        ("a stretch beyond", (log, "--from", "99", "--figure", "9", "--out", good), 2, "no rows"),
+        ("a stretch beyond", (log, "--from", "99", "--figure", "9", "--out", good), 2, "no rows from 99 s;"),
+        ("a stretch before", (log, "--to", "-1", "--out", os.path.join(folder, "none")), 2, "no rows to -1 s;"),
         ("the log as the plot", (log, "--out", log, "--figure", "9"), 2, "input"),
         ("an absent folder", (log, "--out", os.path.join(folder, "no/x.svg"), "--figure", "9"), 5, "x.svg"),
         ("a bad scene", (log, "--scene", log, "--figure", "9", "--out", good), 3, "log.csv"),
@@ -140,7 +162,7 @@ def refusals(log):
         done = run("plot", *arguments)
         equal(f"{what} is refused with {code}", done.returncode, code)
         check(f"{what}: one message that says it", words in done.stderr and len(done.stderr.strip().splitlines()) == 1, done.stderr)
-    check("refusals leave nothing", not os.path.exists(good))
+    check("refusals leave nothing", not os.path.exists(good) and not os.path.exists(os.path.join(folder, "none")))
     done = run("plot", log, "--figure", "9", "--out", good, env={**os.environ, "PATH": "/nowhere"})
     equal("without gnuplot it ends with 2", done.returncode, 2)
     check("and names the package", "gnuplot-nox" in done.stderr, done.stderr)
@@ -157,6 +179,7 @@ with tempfile.TemporaryDirectory(prefix="stiction-plot-test-") as folder:
     equal("replay", run("replay", scene, hand, "--log", first_log).returncode, 0)
     figures(first_log, rows(first_log))
     choices(first_log)
+    short_logs(first_log)
     long_log()
     refusals(first_log)
 finish()
