@@ -15,7 +15,7 @@ const charts = (function () {
         {name: "hand", color: "--hand", dash: [5, 3], y: m.hand_y}, {name: m.objectName, color: "--object", y: m.objectY}]},
       {title: "angle", unit: "°", digits: 2, series: [
         {name: "hand", color: "--hand", dash: [5, 3], y: m.handAngle}, {name: "object", color: "--object", y: m.angle}]},
-      {title: "normal force", unit: "N", digits: 2, floor: 0,
+      {title: "normal force", unit: "N", digits: 2, floor: 0, more: m.touched - m.surfaces.length,
        series: m.surfaces.map(s => ({name: s.name, color: s.color, y: s.normal}))},
       {title: "friction", unit: "N", digits: 2, series: [].concat(...m.surfaces.map(s => [
         {name: s.name, color: s.color, y: s.friction}])).concat(m.surfaces.length > 2 ? [] : [].concat(...m.surfaces.map((s, i) => [
@@ -94,10 +94,20 @@ const charts = (function () {
         return [0, 1];
       if (d.log)
         return [10 ** Math.floor(Math.log10(Math.max(low, 1e-3))), Math.max(10 ** Math.ceil(Math.log10(high)), 1)];
-      /* Room for the label above; a flat line in the middle. */
-      const span = Math.max(high - low, 1e-9, Math.abs(high) * 1e-3);
+      /* Room for the label above; a flat line in the middle of numbers that can be told apart. */
+      const size = Math.abs(high), span = high > low ? Math.max(high - low, size * 1e-3) : Math.max(size / 10, 20 * 10 ** -d.digits);
       return [d.floor === 0 && low >= 0 ? 0 : low - 0.08 * span, high + 0.26 * span];
     };
+  }
+
+  /* With the decimals that the step needs; uPlot's own numbers stop at three. */
+  function numbers(u, splits, axis, space, step) {
+    let decimals = 0;
+
+    while (decimals < 12 && Math.abs(step * 10 ** decimals - Math.round(step * 10 ** decimals)) > 1e-6)
+      decimals++;
+    return splits.map(v => v === null ? null : decimals > 5 ? v.toExponential(1)
+                                                            : (Math.round(v * 10 ** decimals) / 10 ** decimals + 0).toFixed(decimals));
   }
 
   function options(d, width, height, last) {
@@ -107,17 +117,17 @@ const charts = (function () {
     const decades = (u, v) => v.map(x => x !== null && Math.abs(Math.log10(x) % 1) < 1e-9 ? x : null);
 
     return {
-      width, height, pxAlign: 1, legend: {show: false}, padding: [6, 6, last ? 0 : 6, 0],
+      width, height, pxAlign: 1, legend: {show: false}, padding: [6, 10, last ? 0 : 6, 0],
       scales: {x: {time: false}, y: {range: yRange(d), distr: d.log ? 3 : 1}},
       cursor: {y: false, points: {show: false}, drag: {x: true, y: false, dist: 5}, sync: {key: syncKey, setSeries: false}},
       axes: [
-        {stroke, grid, ticks, font, size: last ? 18 : 0, values: last ? undefined : (u, v) => v.map(() => ""),
+        {stroke, grid, ticks, font, size: last ? 18 : 0, values: last ? numbers : (u, v) => v.map(() => ""),
          label: last ? "time / s" : undefined, labelSize: last ? 16 : 0, labelFont: font, gap: 2, labelGap: 0},
-        {stroke, grid: d.log ? {...grid, filter: decades} : grid, ticks, font, size: 52, gap: 4, space: 24,
+        {stroke, grid: d.log ? {...grid, filter: decades} : grid, ticks, font, size: 52, gap: 4, space: 24, values: d.log ? undefined : numbers,
          splits: d.range ? () => [0, 0.5, 1] : undefined, filter: d.log ? decades : undefined},
       ],
       series: [{}].concat(d.series.map(s => ({
-        stroke: () => css(s.color), width: s.thin ? 1 : 1.6, dash: s.thin ? [2, 3] : s.dash, points: {show: false}, spanGaps: false,
+        stroke: () => css(s.color), width: s.thin ? 1 : 1.6, dash: s.thin ? [2, 3] : s.dash, points: {show: model.t.length === 1}, spanGaps: false,
       }))),
       hooks: {
         drawClear: [drawMarks],
@@ -145,6 +155,8 @@ const charts = (function () {
       if (!s.thin)
         values.push({y: s.y, value, digits: d.digits});
     }
+    if (d.more > 0)
+      label.append(`and ${d.more} more`);
     return {label, values};
   }
 
@@ -174,8 +186,8 @@ const charts = (function () {
     frame: {t: 0, row: 0},
     build(m, box, seek) {
       const list = describe(m);
-      const {width, each} = layout(list.length, box, false);
       model = m;
+      const {width, each} = layout(list.length, box, false);
       onSeek = seek;
       panels = list.map((d, i) => make(d, box, width, each + (i === list.length - 1 ? 34 : 0), i === list.length - 1));
     },

@@ -50,8 +50,11 @@ const stiction = (function () {
       }
       m.firstContact[row + 1] = k;
     }
-    order.sort((a, b) => a.index - b.index);
-    m.surfaces = order.slice(0, 4);
+    /* Curves of as many as have colours: those that were touched in most rows. */
+    const rowsOf = s => s.normal.reduce((count, v) => count + (v !== null), 0), longest = new Map(order.map(s => [s, rowsOf(s)]));
+    m.touched = order.length;
+    m.surfaces = order.sort((a, b) => longest.get(b) - longest.get(a) || a.index - b.index).slice(0, 4)
+                      .sort((a, b) => a.index - b.index);
     m.surfaces.forEach((s, i) => {
       const mu = m.run.scene.surfaces[s.index].mu_static;
       s.color = `--surface-${i}`;

@@ -1,5 +1,7 @@
 """The review page in a headless Chromium."""
+import collections
 import hashlib
+import math
 import os
 import random
 import struct
@@ -266,6 +268,49 @@ def real_page(browser, path):
     quiet(page, "page.html")
 
 
+def round_bowl():
+    """A disc led round in a bowl of twelve walls: more surfaces than colours."""
+    walls = [(math.cos(a), math.sin(a), math.degrees(a) + 180) for a in (i * math.pi / 6 for i in range(12))]
+    bowl = SCENE[:SCENE.index("surfaces:")].replace("x: 0.10, y: 0.14, angle_deg: 40", "x: 0") + "surfaces:\n" + "".join(
+        f"  - {{name: w{i}, point: [{0.3 * x!r}, {0.3 * y!r}], normal_deg: {a!r}}}\n" for i, (x, y, a) in enumerate(walls))
+    way = ["# stiction-trace 1"] + [f"{i / 31!r},{0.3 * min(i / 31, 1) * math.cos(i / 40)!r},"
+                                    f"{0.3 * min(i / 31, 1) * math.sin(i / 40)!r},0,0,0,0,1,0" for i in range(200)]
+    return bowl, "\n".join(way) + "\n"
+
+
+def odd_runs(browser):
+    """More surfaces than colours, a single row, and a narrow window."""
+    texts = {"bowl": round_bowl(), "one": (SCENE, "# stiction-trace 1\n5,0.1,0.2,0,0,0,0,1,0\n")}
+    paths = {}
+    for name, files in texts.items():
+        files = [write(os.path.join(folder, f"{name}.{kind}"), text) for kind, text in zip(("yaml", "csv"), files)]
+        paths[name] = os.path.join(folder, name + ".html")
+        done = run(paths[name], *files, str(FPS), "none", program=MAKE_PAGE, env=LEAKS)
+        check(f"{name} is made", done.returncode == 0, done.stderr)
+    done = run("replay", os.path.join(folder, "bowl.yaml"), os.path.join(folder, "bowl.csv"), "--log",
+               os.path.join(folder, "bowl.log"))
+    seen = collections.Counter(s for r in rows(os.path.join(folder, "bowl.log"))
+                               for s in {r[f"c{n}_surface"] for n in range(1, 5)} if s)
+    check("the bowl is touched at many places", len(seen) > 5, seen)
+    most = sorted(sorted(seen, key=lambda s: (-seen[s], int(s)))[:4], key=int)
+    page = browser.page(420, 800)
+    page.open(paths["bowl"])
+    equal("curves of the surfaces touched longest", page.run("stiction.model.surfaces.map(s => String(s.index))"), most)
+    check("and how many there are besides", f"and {len(seen) - 4} more" in page.run("document.getElementById('plots').innerText"),
+          page.run("document.getElementById('plots').innerText"))
+    page.run("stiction.go(stiction.model.frames - 1)")
+    check("in a narrow window no numbers over each other", page.run(
+        "document.querySelector('.readout dl').getBoundingClientRect().bottom <= document.getElementById('contacts').getBoundingClientRect().top"))
+    quiet(page, "bowl.html")
+    page = browser.page()
+    page.open(paths["one"])
+    for i in range(3):
+        found = page.run(f"charts.panels()[{i}].plot.axes[1]._values")
+        check(f"numbers of a flat curve can be told apart, {i}", len(found) == len(set(found)) > 1, found)
+    check("a single row is seen", page.run("charts.panels().every(p => p.plot.series.slice(1).every(s => s.points.show(p.plot, 1)))"))
+    quiet(page, "one.html")
+
+
 with tempfile.TemporaryDirectory(prefix="stiction-report-") as folder:
     scene = write(os.path.join(folder, "scene.yaml"), SCENE)
     hand = write(os.path.join(folder, "hand.csv"), trace())
@@ -278,4 +323,5 @@ with tempfile.TemporaryDirectory(prefix="stiction-report-") as folder:
         without_video(chromium)
         pictures_of_page(chromium)
         real_page(chromium, made)
+        odd_runs(chromium)
 finish()
