@@ -137,7 +137,7 @@ static stic_status keep_folder(stic_movie *m, stic_error *err)
   const stic_status status = refuse_older(m, err);
   int64_t moved = 0;
   int from, to;
-  char name[STIC_PNG_NAME_MAX];
+  char name[STIC_PNG_NAME_MAX], what[STIC_PNG_NAME_MAX + 40];
 
   if (status != STIC_OK)
     return status;
@@ -151,7 +151,8 @@ static stic_status keep_folder(stic_movie *m, stic_error *err)
     moved++;
   }
   if (moved < m->count) {
-    refused(m->folder, "cannot write into the folder", err);
+    snprintf(what, sizeof what, "cannot write %s into the folder", from >= 0 && to >= 0 ? name : "pictures");
+    refused(m->folder, what, err);
     pictures_in(m->folder, true);
   }
   if (from >= 0)

@@ -116,7 +116,9 @@ const char *stic_key_expected(stic_key key, char *out, size_t out_size)
   case STIC_TYPE_ELSEWHERE: snprintf(out, out_size, "a mapping of keys"); break;
   case STIC_TYPE_SURFACES: snprintf(out, out_size, "a list of 1 to %d surfaces", STIC_SURFACES_MAX); break;
   case STIC_TYPE_VERSION: snprintf(out, out_size, "the format version, 1"); break;
-  case STIC_TYPE_NAME: snprintf(out, out_size, "a text of at most %d bytes", STIC_NAME_MAX - 1); break;
+  case STIC_TYPE_NAME:
+    snprintf(out, out_size, "printable text of at most %d bytes", STIC_NAME_MAX - 1);
+    break;
   case STIC_TYPE_HOLD: snprintf(out, out_size, "start or button"); break;
   case STIC_TYPE_SIZE:
     snprintf(out, out_size, "[width, height, depth], each %s", range_text(row, range, sizeof range));

@@ -100,6 +100,17 @@ static int64_t line_at(const char *text, size_t offset)
   return line;
 }
 
+static bool starts_with_tab(const stic_yaml *y, int64_t line)
+{
+  size_t at = 0;
+
+  for (; at < y->length && line > 1; at++)
+    line -= y->text[at] == '\n';
+  while (at < y->length && y->text[at] == ' ')
+    at++;
+  return at < y->length && y->text[at] == '\t';
+}
+
 /* The library does not always say so. */
 static bool lacks_memory(const yaml_parser_t *parser)
 {
@@ -116,6 +127,8 @@ static void syntax_error(const stic_yaml *y)
     const size_t at = parser->problem_offset < y->length ? parser->problem_offset : y->length;
 
     BAD(y, line_at(y->text, at), "not valid text: %s; expected YAML in UTF-8", parser->problem);
+  } else if (starts_with_tab(y, (int64_t)parser->problem_mark.line + 1)) {
+    BAD(y, (int64_t)parser->problem_mark.line + 1, "the line is indented with a tab; YAML expects spaces");
   } else {
     BAD(y, (int64_t)parser->problem_mark.line + 1, "not valid YAML: %s%s%s",
         parser->problem ? parser->problem : "unknown problem", parser->context ? ", " : "",

@@ -44,6 +44,11 @@ int stic_cli_fail(const stic_error *err)
   return (int)err->status;
 }
 
+int stic_cli_fail_to_begin(const stic_error *err)
+{
+  return stic_cli_signal() != 0 ? STIC_EXIT_SIGNAL + stic_cli_signal() : stic_cli_fail(err);
+}
+
 void stic_cli_warn(const stic_error *problem)
 {
   print_problem("warning: ", problem);

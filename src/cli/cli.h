@@ -27,6 +27,10 @@ int stic_cmd_devices(int argc, const char **argv);
 /* Prints an error and returns its status, which is the exit code. Quiet is that the reader of standard output has left,
  * STIC_EXIT_PIPE, and an input that a signal interrupted, STIC_EXIT_SIGNAL + its number. */
 int stic_cli_fail(const stic_error *err);
+
+/* The same for what failed before anything was done: after a signal that is STIC_EXIT_SIGNAL + its number, quietly, as
+ * an open that waits for the other end of a pipe fails then. */
+int stic_cli_fail_to_begin(const stic_error *err);
 void stic_cli_warn(const stic_error *problem);
 /* "stiction: ..." in one line. */
 void stic_cli_say(const char *format, ...) __attribute__((format(printf, 1, 2)));

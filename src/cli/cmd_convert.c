@@ -322,7 +322,7 @@ static int run(const options *o, const char *in, const char *out)
   c.options = o;
   if (convert(&c, in, out, &err) != STIC_OK) {
     stic_outfile_abort(c.out);
-    return stic_cli_fail(&err);
+    return stic_cli_fail_to_begin(&err);
   }
   if (stic_cli_signal() != 0) {
     stic_outfile_abort(c.out);

@@ -153,16 +153,16 @@ static json_t *driver_json(const stic_driver *driver)
   return json_pack("{s:s, s:s, s:o}", "name", driver->name, "about", driver->about, "keys", keys);
 }
 
-static int print_json(const findings *f)
+static int print_json(const findings *f, bool drivers_only)
 {
-  json_t *devices = json_array(), *drivers = json_array(), *all;
+  json_t *devices = drivers_only ? NULL : json_array(), *drivers = json_array(), *all;
   int result;
 
   for (int i = 0; i < f->count; i++)
     json_array_append_new(devices, device_json(&f->devices[i]));
   for (int i = 0; stic_driver_at(i); i++)
     json_array_append_new(drivers, driver_json(stic_driver_at(i)));
-  all = json_pack("{s:o, s:o}", "devices", devices, "drivers", drivers);
+  all = json_pack("{s:o*, s:o}", "devices", devices, "drivers", drivers);
   result = all ? json_dumpf(all, stdout, JSON_INDENT(1) | JSON_ENSURE_ASCII) : -1;
   json_decref(all);
   printf("\n");
@@ -216,10 +216,10 @@ static int show(const char *root, bool drivers, bool json)
     stic_cli_say("devices: out of memory");
     return STIC_NO_MEMORY;
   }
-  if (!drivers || json)
+  if (!drivers)
     find(root, f);
   if (json) {
-    code = print_json(f);
+    code = print_json(f, drivers);
   } else {
     if (!drivers)
       print_findings(f);
@@ -235,7 +235,7 @@ int stic_cmd_devices(int argc, const char **argv)
   char *root = NULL;
   const struct poptOption table[] = {
     {"drivers", '\0', POPT_ARG_NONE, &drivers, 0, "Only the drivers, with all keys of --device", NULL},
-    {"json", '\0', POPT_ARG_NONE, &json, 0, "All of it as JSON, for scripts", NULL},
+    {"json", '\0', POPT_ARG_NONE, &json, 0, "As JSON, for scripts", NULL},
     {"root", '\0', POPT_ARG_STRING | POPT_ARGFLAG_DOC_HIDDEN, &root, 0, NULL, NULL},
     POPT_TABLEEND};
   stic_cli_args args;

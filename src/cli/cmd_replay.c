@@ -6,9 +6,12 @@
 #include "review.h"
 #include "session.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#define MANY_PICTURES 20000 /* minutes of drawing */
 
 static const stic_cli_usage usage = {
   "replay", "[OPTION...] SCENE TRACE",
@@ -139,6 +142,7 @@ static stic_status open_movie(replay *r, const replay_options *o, const char *tr
   stic_movie_settings settings;
   stic_extent extent;
   bool measured = true;
+  double seconds = 0;
   stic_status status;
 
   stic_movie_settings_init(&settings);
@@ -155,7 +159,9 @@ static stic_status open_movie(replay *r, const replay_options *o, const char *tr
     status = stic_session_time(&r->session, err);
   if (status == STIC_OK)
     status = stic_pictures_measure(&r->session.scene, &r->session.settings, trace, o->lenient != 0, &extent,
-                                   &measured, err);
+                                   &measured, &seconds, err);
+  if (status == STIC_OK && seconds * o->fps >= MANY_PICTURES)
+    stic_cli_say("%.0f pictures have to be drawn; fewer with a smaller --fps", floor(seconds * o->fps) + 1);
   if (!measured)
     settings.render.extent = NULL;
   r->hud_timing = o->hud_timing != 0;
@@ -187,7 +193,7 @@ int stic_cmd_replay(int argc, const char **argv)
   stic_session_options session = {NULL, NULL, NULL, NULL, NULL, NULL, 0};
   replay_options o = {.fps = STIC_TARGET_HZ};
   const struct poptOption table[] = {
-    STIC_SESSION_OPTIONS(&session),
+    STIC_SESSION_OPTIONS(&session, "frame, substep=N or event (default)"),
     {"lenient", '\0', POPT_ARG_NONE, &o.lenient, 0, "Pass over bad lines of the trace and count them", NULL},
     {"frames", '\0', POPT_ARG_STRING, &o.folder, 0, "Write pictures DIR/frame_000000.png ...", "DIR"},
     {"video", '\0', POPT_ARG_STRING, &o.video, 0,
@@ -216,7 +222,7 @@ int stic_cmd_replay(int argc, const char **argv)
         stic_trace_open(args.positions[1], &trace_options, &r.trace, &err) != STIC_OK ||
         stic_review_open(&r.review, o.report, &r.session, &source, &err) != STIC_OK ||
         start_movie(&r, &o, &session, args.positions[1], &err) != STIC_OK)
-      code = stic_cli_fail(&err);
+      code = stic_cli_fail_to_begin(&err);
     if (code < 0)
       code = replay_all(&r, &err);
     if (code < 0)

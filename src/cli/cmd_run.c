@@ -347,7 +347,9 @@ static int run_device(run_options *options, const char *scene)
     return STIC_NO_MEMORY;
   }
   r->pictures = &options->pictures;
-  if (open_all(r, options, scene, &err) != STIC_OK || loop(r, &report, &err) != STIC_OK)
+  if (open_all(r, options, scene, &err) != STIC_OK)
+    code = stic_cli_fail_to_begin(&err);
+  else if (loop(r, &report, &err) != STIC_OK)
     code = stic_cli_fail(&err);
   else
     code = finish(r, &report, &err);
@@ -400,7 +402,7 @@ int stic_cmd_run(int argc, const char **argv)
      "For --accuracy auto, which takes the most accurate level and precision whose p99.9 on this scene is within "
      "so many ns of computing a sample (default a tenth of 1/31 s)",
      "NS"},
-    STIC_SESSION_OPTIONS(&o.session),
+    STIC_SESSION_OPTIONS(&o.session, "frame, substep=N, event (default) or auto"),
     STIC_RUN_PICTURE_OPTIONS(&o.pictures),
     POPT_TABLEEND};
   stic_cli_args args;

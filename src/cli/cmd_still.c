@@ -9,6 +9,7 @@
 #include "session.h"
 #include "sheet.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +17,7 @@
 
 #define COLUMNS_MAX 16
 #define ROWS_MAX 64
+#define NOT_GIVEN INT_MIN /* of them */
 
 static const stic_cli_usage usage = {
   "still", "[OPTION...] SCENE TRACE",
@@ -102,6 +104,13 @@ static stic_status find_row(const still *s, size_t *row, stic_error *err)
   return STIC_OK;
 }
 
+static stic_status check_count(const char *option, int count, int most, stic_error *err)
+{
+  if (count != NOT_GIVEN && (count < 1 || count > most))
+    return stic_error_set(err, STIC_USAGE, NULL, 0, "--%s %d: expected 1 to %d", option, count, most);
+  return STIC_OK;
+}
+
 static stic_status check_options(const still_options *o, still *s, stic_error *err)
 {
   if (!o->at == !o->sheet)
@@ -111,13 +120,13 @@ static stic_status check_options(const still_options *o, still *s, stic_error *e
   if (!is_png_name(o->out))
     return stic_error_set(err, STIC_USAGE, NULL, 0, "--out %.200s: expected a name that ends with .png",
                           o->out);
-  if (o->at && (o->columns || o->rows))
+  if (o->at && (o->columns != NOT_GIVEN || o->rows != NOT_GIVEN))
     return refuse("--columns and --rows are for --sheet", err);
   if (o->at && parse_at(o->at, s, err) != STIC_OK)
     return err->status;
-  if (o->columns < 0 || o->columns > COLUMNS_MAX || o->rows < 0 || o->rows > ROWS_MAX)
-    return stic_error_set(err, STIC_USAGE, NULL, 0, "--columns %d --rows %d: expected 1 to %d and 1 to %d",
-                          o->columns, o->rows, COLUMNS_MAX, ROWS_MAX);
+  if (check_count("columns", o->columns, COLUMNS_MAX, err) != STIC_OK ||
+      check_count("rows", o->rows, ROWS_MAX, err) != STIC_OK)
+    return err->status;
   stic_render_settings_init(&s->render);
   if (o->sheet) {
     s->render.width = 640;
@@ -351,14 +360,16 @@ static stic_status fill_sheet(still *s, stic_sheet *sheet, const stic_moment *mo
 /* Three or four side by side, whichever leaves fewer places empty. */
 static int choose_columns(int wanted, int count)
 {
-  const int columns = wanted ? wanted : count % 3 == 0 || (3 - count % 3) % 3 < (4 - count % 4) % 4 ? 3 : 4;
+  const int columns = wanted != NOT_GIVEN                                           ? wanted
+                      : count % 3 == 0 || (3 - count % 3) % 3 < (4 - count % 4) % 4 ? 3
+                                                                                    : 4;
 
   return count < columns ? count : columns;
 }
 
 static stic_status make_sheet(still *s, const still_options *o, stic_error *err)
 {
-  const int columns = o->columns ? o->columns : 3, rows = o->rows ? o->rows : 4;
+  const int columns = o->columns != NOT_GIVEN ? o->columns : 3, rows = o->rows != NOT_GIVEN ? o->rows : 4;
   stic_moment *moments = malloc((size_t)(columns * rows) * sizeof *moments);
   char title[128], subtitle[512];
   stic_sheet_settings settings = {columns,        0,     s->render.width, s->render.height,
@@ -412,7 +423,7 @@ static int run(still *s, const still_options *o)
 
 int stic_cmd_still(int argc, const char **argv)
 {
-  still_options o = {.at = NULL};
+  still_options o = {.columns = NOT_GIVEN, .rows = NOT_GIVEN};
   const struct poptOption table[] = {
     {"at", '\0', POPT_ARG_STRING, &o.at, 0, "Show this moment: seconds of the trace, or its name", "T"},
     {"sheet", '\0', POPT_ARG_NONE, &o.sheet, 0, "Show the telling moments of the whole trace", NULL},
@@ -421,7 +432,7 @@ int stic_cmd_still(int argc, const char **argv)
     {"rows", '\0', POPT_ARG_INT, &o.rows, 0, "At most so many rows of them (default 4)", "N"},
     STIC_PICTURE_OPTIONS(&o.pictures),
     {"lenient", '\0', POPT_ARG_NONE, &o.lenient, 0, "Pass over bad lines of the trace and count them", NULL},
-    STIC_SOLVER_OPTIONS(&o.session),
+    STIC_SOLVER_OPTIONS(&o.session, "frame, substep=N or event (default)"),
     POPT_TABLEEND};
   still s = {.samples = NULL};
   stic_cli_args args;

@@ -22,8 +22,8 @@ static bool parse_size(const char *text, int *width, int *height)
   const char *x = strchr(text, 'x');
   int64_t w, h;
 
-  if (!x || stic_number_parse_integer(text, (size_t)(x - text), 1, INT16_MAX, &w) != STIC_NUMBER_OK ||
-      stic_number_parse_integer(x + 1, strlen(x + 1), 1, INT16_MAX, &h) != STIC_NUMBER_OK)
+  if (!x || stic_number_parse_integer(text, (size_t)(x - text), 1, INT32_MAX, &w) != STIC_NUMBER_OK ||
+      stic_number_parse_integer(x + 1, strlen(x + 1), 1, INT32_MAX, &h) != STIC_NUMBER_OK)
     return false;
   *width = (int)w;
   *height = (int)h;
@@ -38,7 +38,7 @@ static stic_status unknown(const char *option, const char *value, const char *ex
 stic_status stic_pictures_apply(const stic_picture_options *o, stic_render_settings *s, stic_error *err)
 {
   if (o->size && !parse_size(o->size, &s->width, &s->height))
-    return unknown("size", o->size, "WIDTHxHEIGHT in pixels", err);
+    return unknown("size", o->size, "WIDTHxHEIGHT in pixels, e.g. 1280x720", err);
   if (o->camera && !stic_camera_from_name(o->camera, &s->camera))
     return unknown("camera", o->camera, "three-quarter, front or follow", err);
   if (o->theme && !stic_look_from_name(o->theme, &s->look))
@@ -51,7 +51,8 @@ stic_status stic_pictures_apply(const stic_picture_options *o, stic_render_setti
 }
 
 stic_status stic_pictures_measure(const stic_scene *scene, const stic_settings *settings, const char *trace,
-                                  bool lenient, stic_extent *extent, bool *measured, stic_error *err)
+                                  bool lenient, stic_extent *extent, bool *measured, double *seconds,
+                                  stic_error *err)
 {
   const stic_trace_options options = {.lenient = lenient};
   stic_trace_reader *reader = NULL;
@@ -59,7 +60,10 @@ stic_status stic_pictures_measure(const stic_scene *scene, const stic_settings *
   stic_sample sample;
   stic_result result;
   stic_status status;
+  int64_t first_ns = 0;
+  bool any = false;
 
+  *seconds = 0;
   stic_extent_init(extent);
   *measured = !stic_cli_reads_once(trace);
   if (!*measured)
@@ -74,6 +78,9 @@ stic_status stic_pictures_measure(const stic_scene *scene, const stic_settings *
       continue;
     if (next != STIC_TRACE_SAMPLE)
       break;
+    first_ns = any ? first_ns : sample.t_ns;
+    any = true;
+    *seconds = (double)(sample.t_ns - first_ns) * 1e-9;
     stic_sim_step(sim, &sample, &result);
     stic_extent_add(extent, scene, &result);
   }

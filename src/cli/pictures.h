@@ -29,8 +29,10 @@ stic_status stic_pictures_apply(const stic_picture_options *options, stic_render
 
 /* Solves the trace once without writing anything, so that pictures can have a frame and scales that fit all of
  * it. Bad lines are left for the run itself to tell: what was read up to there counts. What can be read once only,
- * standard input and pipes, is left alone, and `*measured` false. A signal ends it early. */
+ * standard input and pipes, is left alone, and `*measured` false. A signal ends it early. `*seconds`: from the first
+ * sample to the last. */
 stic_status stic_pictures_measure(const stic_scene *scene, const stic_settings *settings, const char *trace,
-                                  bool lenient, stic_extent *extent, bool *measured, stic_error *err);
+                                  bool lenient, stic_extent *extent, bool *measured, double *seconds,
+                                  stic_error *err);
 
 #endif

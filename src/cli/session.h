@@ -18,22 +18,18 @@ typedef struct stic_session_options {
 
 void stic_session_options_free(stic_session_options *options);
 
-/* Rows of a popt table for the options above. */
-#define STIC_SESSION_OPTIONS(o)                                                                              \
+/* Rows of a popt table for the options above; `levels` says what --accuracy takes. */
+#define STIC_SESSION_OPTIONS(o, levels)                                                                      \
   {"log", '\0', POPT_ARG_STRING, &(o)->log, 0, "Write a row per sample as CSV ('-': standard output)",       \
    "FILE"},                                                                                                  \
     {"events", '\0', POPT_ARG_STRING, &(o)->events, 0, "Write touches, slips, snaps, grips as CSV", "FILE"}, \
     {"timing", '\0', POPT_ARG_STRING, &(o)->timing, 0, "Write where the time went as JSON", "FILE"},         \
-    STIC_SOLVER_OPTIONS(o)
+    STIC_SOLVER_OPTIONS(o, levels)
 
 /* The part of them that any command which solves has. */
-#define STIC_SOLVER_OPTIONS(o)                                                                                \
-  {"accuracy",                                                                                                \
-   '\0',                                                                                                      \
-   POPT_ARG_STRING,                                                                                           \
-   &(o)->accuracy,                                                                                            \
-   0,                                                                                                         \
-   "How the hand's path between samples is followed: frame, substep=N or event (default)",                    \
+#define STIC_SOLVER_OPTIONS(o, levels)                                                                        \
+  {"accuracy",     '\0', POPT_ARG_STRING,                                                                     \
+   &(o)->accuracy, 0,    "How the hand's path between samples is followed: " levels,                          \
    "LEVEL"},                                                                                                  \
     {"precision", '\0', POPT_ARG_STRING, &(o)->precision, 0, "Arithmetic: f32, f64 (default) or f80", "P"},   \
   {                                                                                                           \

@@ -79,6 +79,8 @@ def nothing():
     check("... without advice on permissions", "udevadm" not in done.stdout, done.stdout)
     keys = root.run("--drivers").stdout
     check("--drivers tells their keys", "    hand       left or right" in keys and "    port " in keys, keys)
+    keys = json.loads(root.run("--drivers", "--json").stdout)
+    check("... also as JSON", list(keys) == ["drivers"] and any(d["name"] == "hydra" for d in keys["drivers"]), keys)
     root.remove()
 
 

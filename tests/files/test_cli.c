@@ -60,6 +60,9 @@ static void test_version(void **state)
 
 static void test_usage(void **state)
 {
+  const char *long_trace = stic_test_write("long.csv", "# stiction-trace 1\n0,0,0.2,0,0,0,0,1,1\n"
+                                                       "1000,0,0.2,0,0,0,0,1,1\n");
+
   (void)state;
   expect(stic_test_program(NULL), 2, "which command?");
   expect(stic_test_program("dance", NULL), 2, "unknown command 'dance'");
@@ -74,12 +77,16 @@ static void test_usage(void **state)
   expect(stic_test_program("replay", scene, trace, "--log", trace, NULL), 2, "is an input");
   expect(stic_test_program("replay", scene, trace, "--log", "-", "--events", "-", NULL), 2, "two outputs");
   expect(stic_test_program("replay", scene, trace, "--frames", "x", "--size", "12", NULL), 2, "--size 12");
+  expect(stic_test_program("replay", scene, trace, "--frames", "x", "--size", "40000x40", NULL), 2,
+         "40000 x 40; expected even numbers");
   expect(stic_test_program("replay", scene, trace, "--frames", "x", "--camera", "no", NULL), 2,
          "--camera no: expected three-quarter, front or follow");
   expect(stic_test_program("replay", scene, trace, "--frames", "x", "--theme", "no", NULL), 2,
          "--theme no: expected light or dark");
   expect(stic_test_program("replay", scene, trace, "--frames", "x", "--quality", "no", NULL), 2,
          "--quality no: expected fast, good or best");
+  expect(stic_test_program("replay", scene, long_trace, "--frames", "/nonexistent/x", NULL), 5,
+         "31001 pictures have to be drawn");
   expect(stic_test_program("replay", scene, trace, "--frames", "x", "--plot-of", "no", NULL), 2,
          "--plot-of no: expected auto, x, y or angle");
   expect(stic_test_program("replay", scene, trace, "--report", "x.html", "--fps", "0", NULL), 2, "");

@@ -2,12 +2,13 @@
 whole or absent."""
 import os
 import resource
+import signal
 import socket
 import subprocess
 import time
 
-from common import (PACKET, SANITIZED, SCENE, SERIAL, TRACE_HEAD, check, finish, folder, leftovers, path, read, rows,
-                    run, start, wait, write)
+from common import (PACKET, SANITIZED, SCENE, SERIAL, TRACE_HEAD, await_handlers, check, finish, folder, leftovers, path,
+                    read, rows, run, start, wait, write)
 
 scene = write("scene.yaml", SCENE)
 trace = write("hand.csv", TRACE_HEAD + rows(300))
@@ -371,6 +372,34 @@ def full_disk():
     check("a recording on a full disk", done.code == 0 and os.path.getsize(record) == 4096, done)
 
 
+def waiting_pipes():
+    """A pipe without another end is waited for, and a signal ends that as it ends the rest."""
+    pipe = path("pipe")
+    os.mkfifo(pipe)
+    device = "trace:speed=1000000,file=" + trace
+    for arguments in (["replay", scene, trace, "--log", pipe], ["replay", scene, pipe], ["convert", recording, pipe],
+                      ["still", scene, pipe, "--at", "0", "--out", path("no.png")], ["check", pipe], ["plot", pipe],
+                      ["run", scene, "--device", device, "--log", pipe],
+                      ["run", scene, "--device", device, "--record", pipe]):
+        process = start(arguments, before=None)
+        await_handlers(process)
+        time.sleep(0.2)  # most likely it waits by now
+        process.send_signal(signal.SIGTERM)
+        done = wait(process)
+        what = " ".join(arguments).replace(folder, ".")
+        check(f"{what}: ended by a signal", done.code == 143 and not done.lines, done)
+    check("waiting pipes: nothing left", not leftovers() and not os.path.exists(path("no.png")), leftovers())
+
+
+def in_the_way():
+    """A folder where a picture has to go."""
+    os.makedirs(path("way", "frame_000003.png"))
+    done = run("replay", scene, trace, "--frames", path("way"), "--size", "160x120", "--fps", "2", "--force", before=None)
+    check("a folder in the way of a picture", done.code == 5 and len(done.lines) == 1 and
+          ("frame_000003.png" in done.err or "renderer" in done.err), done)
+    check("no other picture is left", os.listdir(path("way")) == ["frame_000003.png"], os.listdir(path("way")))
+
+
 def closed_streams():
     """A reader that left, and streams that were never there."""
     big = write("big.csv", TRACE_HEAD + rows(20000))
@@ -500,6 +529,8 @@ long_lines()
 outputs()
 same_file()
 full_disk()
+waiting_pipes()
+in_the_way()
 closed_streams()
 no_window()
 through_pipes()

@@ -158,7 +158,9 @@ static void test_usage(void **state)
   expect(stic_test_program("still", scene, trace, "--at", "1", "--rows", "2", "--out", out, NULL), 2,
          "--sheet");
   expect(stic_test_program("still", scene, trace, "--sheet", "--columns", "99", "--out", out, NULL), 2,
-         "1 to 16");
+         "--columns 99: expected 1 to 16");
+  expect(stic_test_program("still", scene, trace, "--sheet", "--rows", "0", "--out", out, NULL), 2,
+         "--rows 0: expected 1 to 64");
   expect(stic_test_program("still", scene, trace, "--sheet", "--columns", "-1", "--out", out, NULL), 2,
          "1 to 16");
   expect(stic_test_program("still", scene, trace, "--sheet", "--size", "4096x4096", "--columns", "5", "--out",
