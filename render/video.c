@@ -59,7 +59,7 @@ stic_status stic_video_create(const char *path, int width, int height, int fps, 
   else
     status =
       stic_error_set(err, STIC_USAGE, path, 0,
-                     "this build cannot write video: it was made without libav, or its module is missing");
+                     "this build cannot write video: it was made without libav, or its module cannot be loaded");
   if (status) {
     stic_video_destroy(v);
     return status;

@@ -50,7 +50,7 @@ typedef enum stic_status {
   STIC_BAD_INPUT = 3,    /* a file's content; `line` says where */
   STIC_NO_DEVICE = 4,    /* absent, or lost for good */
   STIC_CANNOT_WRITE = 5, /* output could not be written, or there is no usable renderer */
-  STIC_NO_MEMORY = 6
+  STIC_NO_MEMORY = 6     /* nor threads or file descriptors */
 } stic_status;
 
 typedef struct stic_error {

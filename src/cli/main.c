@@ -42,7 +42,7 @@ static int show_help(void)
          "  3  bad input file: FILE:LINE: what was found and what was expected\n"
          "  4  no device, or it was lost for good\n"
          "  5  could not write, or there is no usable renderer\n"
-         "  6  out of memory\n"
+         "  6  out of memory, threads or file descriptors\n"
          "  128 + n  ended by signal n\n");
   return STIC_OK;
 }

@@ -118,7 +118,7 @@ static int start_thread(stic_live *live, void *(*run)(void *), size_t stack)
 
 static stic_status no_thread(int problem, stic_error *err)
 {
-  return stic_error_set(err, STIC_FAILED, NULL, 0, "cannot start a thread: %s", strerror(problem));
+  return stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "cannot start a thread: %s", strerror(problem));
 }
 
 static stic_status start_pictures(stic_live *live, stic_error *err)

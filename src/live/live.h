@@ -98,7 +98,7 @@ typedef struct stic_live_report {
 typedef struct stic_live stic_live;
 
 /* Allocates all that the loop will use, opens the pictures and starts the threads. `*live` is NULL on failure and
- * nothing runs then. The caller owns it. Errors: STIC_NO_MEMORY, STIC_FAILED (no thread, no pipe), those of
+ * nothing runs then. The caller owns it. Errors: STIC_NO_MEMORY (also no thread, no pipe), those of
  * pictures->open(). Real-time: no. */
 stic_status stic_live_start(const stic_live_settings *settings, stic_live **live, stic_error *err);
 

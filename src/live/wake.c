@@ -21,9 +21,9 @@ stic_status stic_wake_create(stic_wake *w, stic_error *err)
   w->ends[0] = w->ends[1] = -1;
   if (pipe(w->ends) == 0 && set_up(w->ends[0]) && set_up(w->ends[1]))
     return STIC_OK;
-  stic_error_set(err, STIC_FAILED, NULL, 0, "no pipe between threads: %s", strerror(errno));
+  stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "no pipe between threads: %s", strerror(errno));
   stic_wake_destroy(w);
-  return STIC_FAILED;
+  return STIC_NO_MEMORY;
 }
 
 void stic_wake_destroy(stic_wake *w)

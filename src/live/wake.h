@@ -8,7 +8,7 @@ typedef struct stic_wake {
   int ends[2]; /* to read, to write */
 } stic_wake;
 
-/* STIC_FAILED without file descriptors. Real-time: no. */
+/* STIC_NO_MEMORY without file descriptors. Real-time: no. */
 stic_status stic_wake_create(stic_wake *wake, stic_error *err);
 void stic_wake_destroy(stic_wake *wake);
 

@@ -41,7 +41,7 @@ static const wrong cases[] = {
   {"name: test", "name: *a", 2, "alias (*a)"},
   {"name: test", "name: !!str test", 2, "tag"},
   {"name: test", "name: [1]", 2, "name is a list of 1; expected printable text"},
-  {"name: test", "name: \"a\\nb\"", 2, "expected a text"},
+  {"name: test", "name: \"a\\nb\"", 2, "expected printable text"},
   {"name: test", "name: 0123456789012345678901234567890123456789012345678901234567890123", 2, "63 bytes"},
   /* what is missing */
   {"  size: [0.16, 0.08, 0.10]\n", "", 3, "object.size is missing"},

@@ -391,6 +391,27 @@ def waiting_pipes():
     check("waiting pipes: nothing left", not leftovers() and not os.path.exists(path("no.png")), leftovers())
 
 
+def few_descriptors():
+    """Each number of file descriptors: done, or one word why not."""
+    device = "trace:speed=1000000,file=" + trace
+    for count in range(3, 20):
+        def few():
+            resource.setrlimit(resource.RLIMIT_NOFILE, (count, count))
+        for arguments in (["replay", scene, trace, "--log", path("few.csv"), "--events", path("few-events.csv")],
+                          ["run", scene, "--device", device, "--log", path("few.csv")]):
+            done = run(*arguments, before=few)
+            told = [line for line in done.lines if "descriptors" in line or "Too many open files" in line]
+            early = done.code == 127 and "shared libraries" in done.err
+            check(f"{count} descriptors, {arguments[0]}", done.code == 0 or early or
+                  done.code in (3, 5, 6) and len(done.lines) == len(told) == 1, done)
+            check(f"{count} descriptors, {arguments[0]}: whole or absent", os.path.exists(path("few.csv")) ==
+                  (done.code == 0), done)
+            for name in os.listdir(folder):
+                if name.startswith("few"):
+                    os.unlink(path(name))
+    check("few descriptors: nothing left", not leftovers(), leftovers())
+
+
 def in_the_way():
     """A folder where a picture has to go."""
     os.makedirs(path("way", "frame_000003.png"))
@@ -530,6 +551,7 @@ outputs()
 same_file()
 full_disk()
 waiting_pipes()
+few_descriptors()
 in_the_way()
 closed_streams()
 no_window()
