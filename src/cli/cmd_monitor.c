@@ -26,7 +26,7 @@ static const stic_cli_usage usage = {
   "monitor", "[OPTION...] --device NAME[:key=value,...]",
   "Shows pose, buttons, rate, jitter, state and counters of a tracker, and its way from the side and from above.\n"
   "Keys: q ends, r forgets the way and brings a pose made from velocities home. Where standard output is no\n"
-  "terminal, or with --plain, a line of text a second instead.\n",
+  "terminal or a dumb one, or with --plain, a line of text a second instead.\n",
   0, 0};
 
 typedef struct options {
@@ -80,7 +80,7 @@ static void take_terminal(watching *w)
 {
   struct termios raw;
 
-  put_text(w, "\033[?1049h\033[?25l\033[2J"); /* a screen of our own, no cursor */
+  put_text(w, "\033[?1049h\033[?25l\033[?7l\033[2J"); /* a screen of our own, no cursor, long lines are cut */
   if (!isatty(STDIN_FILENO) || tcgetattr(STDIN_FILENO, &w->found) != 0)
     return;
   raw = w->found;
@@ -95,9 +95,17 @@ static void give_terminal_back(watching *w)
 {
   if (!w->full)
     return;
-  put_text(w, "\033[0m\033[?25h\033[?1049l");
+  put_text(w, "\033[0m\033[?7h\033[?25h\033[?1049l");
   if (w->keys)
     tcsetattr(STDIN_FILENO, TCSANOW, &w->found);
+}
+
+/* Whether the terminal can do more than type. */
+static bool knows_escapes(void)
+{
+  const char *kind = getenv("TERM");
+
+  return kind && *kind && strcmp(kind, "dumb") != 0;
 }
 
 static bool is_utf8(void)
@@ -184,6 +192,17 @@ static void update(watching *w)
   }
 }
 
+/* Length of the first lines: more would scroll a small terminal. */
+static size_t first_lines(const char *page, size_t length, int lines)
+{
+  for (size_t i = 0; i < length; i++) {
+    lines -= page[i] == '\n';
+    if (lines == 0)
+      return i;
+  }
+  return length;
+}
+
 static void show(watching *w)
 {
   size_t length;
@@ -192,7 +211,7 @@ static void show(watching *w)
   if (w->full) {
     const stic_monitor_look look = look_of_terminal(w->options);
 
-    length = stic_monitor_page(&w->monitor, &look, w->page);
+    length = first_lines(w->page, stic_monitor_page(&w->monitor, &look, w->page), look.rows);
   } else {
     length = stic_monitor_line(&w->monitor, w->page, sizeof w->page);
     if (w->monitor.raw_length > 0) {
@@ -294,7 +313,7 @@ static int run(const options *o)
   begin_tracker(w);
   w->monitor.sample.orientation[3] = 1;
   w->monitor.started_ns = stic_clock_ns();
-  w->full = !o->plain && isatty(STDOUT_FILENO);
+  w->full = !o->plain && isatty(STDOUT_FILENO) && knows_escapes();
   if (w->full)
     take_terminal(w);
   code = end(w, watch(w));

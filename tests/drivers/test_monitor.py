@@ -30,8 +30,8 @@ class Screen:
     def __init__(self):
         self.lines = [[" "] * COLUMNS for _ in range(ROWS)]
         self.row = self.column = 0
-        self.alternate, self.cursor, self.pages = False, True, 0
-        self.strange = []
+        self.alternate, self.cursor, self.wrap, self.pages = False, True, True, 0
+        self.strange, self.lowest = [], 0
         self.rest = ""
 
     def feed(self, text):
@@ -53,6 +53,7 @@ class Screen:
                 self.column = 0
             elif c == "\n":
                 self.row += 1
+                self.lowest = max(self.lowest, self.row if self.alternate else 0)
                 if self.row == ROWS and self.alternate:
                     self.strange.append("the page is too high")
                 self.row = min(self.row, ROWS - 1)
@@ -75,6 +76,8 @@ class Screen:
                 self.lines[row] = [" "] * COLUMNS
         elif private and numbers == "1049":
             self.alternate = letter == "h"
+        elif private and numbers == "7":
+            self.wrap = letter == "h"
         elif private and numbers == "25":
             self.cursor = letter == "h"
         elif letter != "m":
@@ -85,14 +88,14 @@ class Screen:
 
 
 class Monitor:
-    def __init__(self, *arguments, utf8=True):
+    def __init__(self, *arguments, utf8=True, rows=ROWS, columns=COLUMNS, term="xterm"):
         self.master, slave = pty.openpty()
-        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", ROWS, COLUMNS, 0, 0))
+        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
         self.slave = slave
         self.found = termios.tcgetattr(slave)
         self.screen = Screen()
         self.raw = b""
-        environment = {**os.environ, "LC_ALL": "C.UTF-8" if utf8 else "C"}
+        environment = {**os.environ, "LC_ALL": "C.UTF-8" if utf8 else "C", "TERM": term}
         self.child = subprocess.Popen([PROGRAM, "monitor", *arguments], stdin=slave, stdout=slave,
                                       stderr=subprocess.PIPE, env=environment, start_new_session=True,
                                       preexec_fn=lambda: fcntl.ioctl(slave, termios.TIOCSCTTY, 0))
@@ -211,6 +214,20 @@ def emulated():
     m.end("lost", lambda: m.key("q"))
 
 
+def odd_terminals():
+    m = Monitor("--device", "sample", rows=5, columns=20)
+    s = m.read(20, lambda s: s.pages >= 3)
+    check("small: lines are cut, not wrapped", not s.wrap and s.alternate)
+    check("small: a page scrolls nothing", s.lowest == 4, s.lowest)
+    m.end("small", lambda: m.key("q"))
+    check("small: lines are wrapped again", m.screen.wrap)
+    for term in ("dumb", ""):
+        m = Monitor("--device", "sample", "--seconds", "1.2", term=term)
+        s = m.read(20, lambda s: s.text().count("running") > 1)
+        check(f"terminal '{term}': plain lines", s.text().count("running") > 1 and not s.pages, s.text())
+        m.child.wait(20)
+
+
 def plain():
     done = subprocess.run([PROGRAM, "monitor", "--device", "sample", "--seconds", "1.5", "--raw"], capture_output=True,
                           text=True, timeout=60)
@@ -238,5 +255,6 @@ sample_device()
 signals()
 recording()
 emulated()
+odd_terminals()
 plain()
 sys.exit(1 if failures else 0)
