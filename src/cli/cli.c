@@ -56,13 +56,13 @@ void stic_cli_warn(const stic_error *problem)
 
 void stic_cli_say(const char *format, ...)
 {
+  char text[2048], shown[2048];
   va_list args;
 
   va_start(args, format);
-  fputs("stiction: ", stderr);
-  vfprintf(stderr, format, args);
-  fputc('\n', stderr);
+  vsnprintf(text, sizeof text, format, args);
   va_end(args);
+  fprintf(stderr, "stiction: %s\n", stic_error_quote(text, strlen(text), shown, sizeof shown));
 }
 
 int stic_cli_flush(void)

@@ -66,6 +66,7 @@ static void test_usage(void **state)
   (void)state;
   expect(stic_test_program(NULL), 2, "which command?");
   expect(stic_test_program("dance", NULL), 2, "unknown command 'dance'");
+  expect(stic_test_program("replay", scene, trace, "a\nb\033", NULL), 2, "one argument too many: a?b?;");
   expect(stic_test_program("replay", scene, NULL), 2, "arguments are missing");
   expect(stic_test_program("replay", scene, trace, trace, NULL), 2, "one argument too many");
   expect(stic_test_program("replay", scene, trace, "--nonsense", NULL), 2, "--nonsense");
