@@ -105,6 +105,8 @@ static stic_status cannot_write(const char *path, int problem, stic_error *err)
 {
   const char *name = strcmp(path, "-") == 0 ? STIC_OUTFILE_STDOUT : path;
 
+  if (!*path)
+    return stic_error_set(err, STIC_CANNOT_WRITE, NULL, 0, "cannot write: the output's name is empty");
   if (problem == ENOMEM)
     return stic_error_set(err, STIC_NO_MEMORY, name, 0, "out of memory");
   return stic_error_set(err, STIC_CANNOT_WRITE, name, 0, "cannot write: %s", strerror(problem));

@@ -169,6 +169,7 @@ static void test_outputs(void **state)
   free(first);
   free(second);
   expect(stic_test_program("replay", scene, trace, "--log", "/dev/full", NULL), 5, "No space left");
+  expect(stic_test_program("replay", scene, trace, "--log", "", NULL), 5, "the output's name is empty");
   expect(stic_test_program("replay", scene, trace, "--log", "/nonexistent/log", NULL), 5, "cannot write");
   expect(stic_test_program("replay", scene, trace, "--events", "/nonexistent/e", "--log",
                            stic_test_path("no.csv"), NULL),
