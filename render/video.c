@@ -57,9 +57,9 @@ stic_status stic_video_create(const char *path, int width, int height, int fps, 
   if (v->library)
     status = v->module->create(path, width, height, fps, live, &v->writer, err);
   else
-    status =
-      stic_error_set(err, STIC_USAGE, path, 0,
-                     "this build cannot write video: it was made without libav, or its module cannot be loaded");
+    status = stic_error_set(
+      err, STIC_USAGE, path, 0,
+      "this build cannot write video: it was made without libav, or its module cannot be loaded");
   if (status) {
     stic_video_destroy(v);
     return status;
