@@ -272,8 +272,11 @@ int64_t stic_trace_skipped(const stic_trace_reader *reader)
 
 struct stic_trace_writer {
   int fd;
-  bool owned;
-  char path[256];
+  bool owned, regular;
+  char path[256]; /* for messages */
+  char *name;     /* of the file */
+  char *head;     /* until the recording has begun, NULL after */
+  size_t head_length;
 };
 
 size_t stic_trace_line(const stic_sample *sample, char *out)
@@ -314,63 +317,104 @@ static stic_status write_whole(stic_trace_writer *w, const char *text, size_t le
   return STIC_OK;
 }
 
-/* An emptied file that no other recorder writes to; -1 and errno, with what the other wrote untouched. */
-static int open_alone(const char *path)
+/* A file that no other recorder writes to, with what is in it; -1 and errno. */
+static int open_alone(const char *path, bool *regular)
 {
   struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
   const int fd = open(path, O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   struct stat st;
   int problem;
 
-  if (fd < 0 || fstat(fd, &st) != 0 || !S_ISREG(st.st_mode))
+  *regular = fd >= 0 && fstat(fd, &st) == 0 && S_ISREG(st.st_mode);
+  if (!*regular || fcntl(fd, F_SETLK, &whole) == 0 || errno == ENOLCK || errno == EINVAL)
     return fd;
-  if (fcntl(fd, F_SETLK, &whole) == 0 || errno == ENOLCK || errno == EINVAL) {
-    if (ftruncate(fd, 0) == 0)
-      return fd;
-  }
   problem = errno == EAGAIN || errno == EACCES ? EBUSY : errno;
   close(fd);
   errno = problem;
   return -1;
 }
 
-/* The head, line by line. */
-typedef struct head_writer {
-  stic_trace_writer *writer;
-  stic_status status;
-  stic_error *err;
-} head_writer;
-
-static void write_head_line(void *context, const char *text)
+/* Nothing is added after a lack of memory. */
+static void add_to_head(void *context, const char *text)
 {
-  head_writer *h = context;
+  stic_trace_writer *w = context;
+  const size_t length = strlen(text);
+  char *longer = w->head ? realloc(w->head, w->head_length + length + 1) : NULL;
 
-  if (h->status == STIC_OK)
-    h->status = write_whole(h->writer, text, strlen(text), h->err);
+  if (!longer) {
+    free(w->head);
+    w->head = NULL;
+    return;
+  }
+  memcpy(longer + w->head_length, text, length + 1);
+  w->head = longer;
+  w->head_length += length;
 }
 
-static stic_status write_head(stic_trace_writer *w, const stic_provenance *provenance, stic_error *err)
+/* False without memory. */
+static bool make_head(stic_trace_writer *w, const stic_provenance *provenance)
 {
-  head_writer h = {w, STIC_OK, err};
-
-  write_head_line(&h, STIC_TRACE_FORMAT "\n");
+  w->head_length = 0;
+  w->head = malloc(1);
+  add_to_head(w, STIC_TRACE_FORMAT "\n");
   if (provenance)
-    stic_provenance_lines(provenance, write_head_line, &h);
-  write_head_line(&h, STIC_TRACE_HEADER "\n");
-  return h.status;
+    stic_provenance_lines(provenance, add_to_head, w);
+  add_to_head(w, STIC_TRACE_HEADER "\n");
+  return w->head != NULL;
+}
+
+/* An older recording is lost only now, when there is something to put in its place. */
+static stic_status begin(stic_trace_writer *w, stic_error *err)
+{
+  char *head = w->head;
+  stic_status status = STIC_OK;
+
+  if (!head)
+    return STIC_OK;
+  w->head = NULL;
+  if (w->regular && ftruncate(w->fd, 0) != 0)
+    status = stic_error_set(err, STIC_CANNOT_WRITE, w->path, 0, "cannot empty the older recording: %s",
+                            strerror(errno));
+  if (status == STIC_OK)
+    status = write_whole(w, head, w->head_length, err);
+  free(head);
+  return status;
+}
+
+/* What was opened and never begun leaves an older recording, or no file. */
+static void leave_untouched(const stic_trace_writer *w)
+{
+  struct stat st;
+
+  if (w->head && w->regular && w->owned && fstat(w->fd, &st) == 0 && st.st_size == 0)
+    unlink(w->name);
+}
+
+static void destroy(stic_trace_writer *w)
+{
+  if (w) {
+    free(w->name);
+    free(w->head);
+  }
+  free(w);
 }
 
 stic_status stic_trace_create(const char *path, const stic_provenance *provenance, stic_trace_writer **writer,
                               stic_error *err)
 {
   const bool standard_output = strcmp(path, "-") == 0;
-  stic_trace_writer *w = malloc(sizeof *w);
-  stic_status status;
+  stic_trace_writer *w = calloc(1, sizeof *w);
+  stic_status status = STIC_OK;
 
   *writer = NULL;
-  if (!w)
+  if (w)
+    w->name = malloc(strlen(path) + 1);
+  if (!w || !w->name || !make_head(w, provenance)) {
+    destroy(w);
     return stic_error_set(err, STIC_NO_MEMORY, path, 0, "out of memory");
-  w->fd = standard_output ? STDOUT_FILENO : open_alone(path);
+  }
+  strcpy(w->name, path);
+  w->fd = standard_output ? STDOUT_FILENO : open_alone(path, &w->regular);
   w->owned = !standard_output;
   if (standard_output)
     path = STIC_OUTFILE_STDOUT;
@@ -378,10 +422,11 @@ stic_status stic_trace_create(const char *path, const stic_provenance *provenanc
   if (w->fd < 0) {
     status = stic_error_set(err, STIC_CANNOT_WRITE, path, 0, "cannot create the recording: %s",
                             errno == EBUSY ? "another program is recording to it" : strerror(errno));
-    free(w);
+    destroy(w);
     return status;
   }
-  status = write_head(w, provenance, err);
+  if (!w->regular)
+    status = begin(w, err);
   if (status != STIC_OK) {
     stic_trace_finish(w, NULL);
     return status;
@@ -394,7 +439,9 @@ stic_status stic_trace_write(stic_trace_writer *writer, const stic_sample *sampl
 {
   char line[STIC_TRACE_LINE_MAX];
 
-  return write_whole(writer, line, stic_trace_line(sample, line), err);
+  const stic_status status = begin(writer, err);
+
+  return status == STIC_OK ? write_whole(writer, line, stic_trace_line(sample, line), err) : status;
 }
 
 stic_status stic_trace_finish(stic_trace_writer *writer, stic_error *err)
@@ -403,13 +450,17 @@ stic_status stic_trace_finish(stic_trace_writer *writer, stic_error *err)
 
   if (!writer)
     return STIC_OK;
+  if (err)
+    status = begin(writer, err);
+  else
+    leave_untouched(writer);
   /* Pipes and the like cannot be synced, which is no fault. */
-  if (fsync(writer->fd) != 0 && errno != EINVAL && errno != EROFS && errno != ENOTSUP)
+  if (fsync(writer->fd) != 0 && status == STIC_OK && errno != EINVAL && errno != EROFS && errno != ENOTSUP)
     status = stic_error_set(err, STIC_CANNOT_WRITE, writer->path, 0, "cannot finish the recording: %s",
                             strerror(errno));
   if (writer->owned && close(writer->fd) != 0 && status == STIC_OK)
     status = stic_error_set(err, STIC_CANNOT_WRITE, writer->path, 0, "cannot finish the recording: %s",
                             strerror(errno));
-  free(writer);
+  destroy(writer);
   return status;
 }

@@ -55,13 +55,14 @@ int64_t stic_trace_skipped(const stic_trace_reader *reader);
 typedef struct stic_trace_writer stic_trace_writer;
 
 /* Creates a recording. It is written line by line with one write() each, so that all but the last
- * line survives a crash; an existing file is replaced, unless another program is recording to it. `provenance` may be
+ * line survives a crash; an existing file is replaced by the first sample, unless another program is recording to it. `provenance` may be
  * NULL: none. "-" is standard output. Errors: STIC_CANNOT_WRITE, STIC_NO_MEMORY. Real-time: no. */
 stic_status stic_trace_create(const char *path, const stic_provenance *provenance, stic_trace_writer **writer,
                               stic_error *err);
 /* Appends one sample; reading it back gives the same one, bit for bit. */
 stic_status stic_trace_write(stic_trace_writer *writer, const stic_sample *sample, stic_error *err);
-/* Ends the recording and frees the writer, also after an error; NULL allowed. */
+/* Ends the recording and frees the writer, also after an error; NULL allowed. Without `err` a recording that has no
+ * sample yet is given up: the older file stays, or none. */
 stic_status stic_trace_finish(stic_trace_writer *writer, stic_error *err);
 
 /* The text of one sample with its line end; returns its length. `out` needs STIC_TRACE_LINE_MAX. */

@@ -412,6 +412,20 @@ def few_descriptors():
     check("few descriptors: nothing left", not leftovers(), leftovers())
 
 
+def older_recording():
+    """A run that does not begin takes no older recording with it, and leaves no new one."""
+    older, new = write("older.csv", read(trace)), path("new.csv")
+    os.mkdir(path("older-frames"))
+    write(os.path.join("older-frames", "frame_000000.png"), "x")
+    for record in (older, new):
+        for arguments in (["--video", "x.avi"], ["--fps", "0", "--frames", path("no-frames")],
+                          ["--frames", path("older-frames")]):
+            done = run("run", scene, "--device", "trace:speed=1000000,file=" + trace, "--record", record, *arguments,
+                       before=None)
+            check(f"{arguments[0]}: does not begin", done.code in (2, 5) and len(done.lines) == 1, done)
+            check(f"{arguments[0]}: the older recording stays", read(older) == read(trace) and not os.path.exists(new))
+
+
 def in_the_way():
     """A folder where a picture has to go."""
     os.makedirs(path("way", "frame_000003.png"))
@@ -552,6 +566,7 @@ same_file()
 full_disk()
 waiting_pipes()
 few_descriptors()
+older_recording()
 in_the_way()
 closed_streams()
 no_window()
