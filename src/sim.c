@@ -21,12 +21,14 @@ struct stic_sim {
 
   bool started;
   bool held;
-  bool grip_down;      /* the button at the last sample */
-  int64_t t_ns;        /* of the last sample */
-  double hand_angle;   /* raw, unwrapped */
-  double angle_offset; /* target angle minus hand angle, from the grip on */
-  double z, z_offset;  /* object's depth; object minus hand */
-  stic_hand hand;      /* at the last sample */
+  bool grip_down;    /* the button at the last sample */
+  int64_t t_ns;      /* of the last sample */
+  double hand_angle; /* raw, unwrapped */
+  double z;          /* object's depth */
+  struct { /* as they were at the grip: target angle and depth keep their distance from the hand's */
+    double theta, z, hand_angle, hand_z;
+  } grip;
+  stic_hand hand; /* at the last sample */
   int64_t slips;
   bool timed;
   int64_t collide_ns, total_ns;
@@ -147,22 +149,28 @@ static void add_hand_event(stic_sim *sim, stic_event_kind kind, const stic_sampl
   sim->core->add_event(sim->state, e);
 }
 
+/* Equation (4)'s target angle. Exactly the object's own angle at the grip. */
+static stic_hand hand_of(const stic_sim *sim, const stic_sample *sample)
+{
+  const double turned = sim->hand_angle - sim->grip.hand_angle;
+  return (stic_hand){sample->position[0], sample->position[1],
+                     sim->held ? sim->grip.theta + turned : sim->hand_angle};
+}
+
 /* The offsets between hand and object stay as they are at this moment. */
 static void take(stic_sim *sim, const stic_sample *sample)
 {
-  double dx, dy, theta, bx, by;
-  sim->core->offset(sim->state, sample->position[0], sample->position[1], &dx, &dy, &theta);
-  if (sim->scene.hold == STIC_HOLD_START) {
-    bx = sim->scene.holding_point[0], by = sim->scene.holding_point[1];
-    sim->angle_offset = sim->z_offset = 0;
-  } else {
-    double c = cos(theta), s = sin(theta);
-    bx = c * dx + s * dy, by = c * dy - s * dx;
-    sim->angle_offset = theta - sim->hand_angle;
-    sim->z_offset = sim->z - sample->position[2];
+  const bool from_start = sim->scene.hold == STIC_HOLD_START;
+  double dx, dy;
+  memset(&sim->grip, 0, sizeof sim->grip);
+  if (!from_start) {
+    sim->core->offset(sim->state, 0, 0, &dx, &dy, &sim->grip.theta);
+    sim->grip.hand_angle = sim->hand_angle;
+    sim->grip.z = sim->z;
+    sim->grip.hand_z = sample->position[2];
   }
-  sim->core->take(sim->state, bx, by);
   sim->held = true;
+  sim->core->take(sim->state, hand_of(sim, sample), from_start ? sim->scene.holding_point : NULL);
   add_hand_event(sim, STIC_EVENT_TAKE, sample);
 }
 
@@ -203,15 +211,14 @@ void stic_sim_step(stic_sim *sim, const stic_sample *sample, stic_result *result
   memset(&sim->report, 0, sizeof sim->report);
   sim->hand_angle = hand_angle(sim, sample->orientation);
   bool taken = update_grip(sim, sample);
-  stic_hand target = {sample->position[0], sample->position[1],
-                      sim->hand_angle + (sim->held ? sim->angle_offset : 0)};
+  const stic_hand target = hand_of(sim, sample);
   double t = (double)sample->t_ns * 1e-9;
   if (sim->held) {
     if (taken)
       sim->core->relax(sim->state, target, t, &sim->report);
     else
       sim->core->follow(sim->state, sim->hand, target, (double)sim->t_ns * 1e-9, t, &sim->report);
-    sim->z = sample->position[2] + sim->z_offset;
+    sim->z = sim->grip.z + (sample->position[2] - sim->grip.hand_z);
   }
   sim->slips += sim->report.slips;
   sim->hand = target;

@@ -231,7 +231,7 @@ static void check_rest(stic_checker *k, const row *w)
   if (judged(r) && judged(last) && hand_stands && !(off <= w->eps))
     COMPLAIN("7: moved by %.3g under a hand that stands still", off);
   /* Taken again: the spring starts slack. */
-  if (r->state != STIC_RELEASED && last->state == STIC_RELEASED && !(off <= w->eps))
+  if (r->state != STIC_RELEASED && last->state == STIC_RELEASED && moved)
     COMPLAIN("7: moved by %.3g when taken", off);
 }
 

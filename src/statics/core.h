@@ -48,8 +48,9 @@ typedef struct stic_core {
   size_t (*memory_size)(void);
   void (*init)(void *core, const stic_scene *scene, const stic_settings *settings, const stic_parts *parts,
                stic_collider *collider, stic_event *events, int event_capacity);
-  /* The grip: the object's pose stays; holding point in body coordinates. */
-  void (*take)(void *core, double body_x, double body_y);
+  /* The grip: the object's pose stays, to the last bit. Held at `holding_point` (m, body coordinates), or, if that is
+   * NULL, where the hand is; the hand's angle must then be the object's. */
+  void (*take)(void *core, stic_hand hand, const double *holding_point);
   /* One RELAX with the hand held still (first sample, and level `frame`). */
   void (*relax)(void *core, stic_hand hand, double t, stic_core_report *report);
   /* Follows the hand from the last judged pose to the next sample at the settings' level. */

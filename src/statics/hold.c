@@ -33,6 +33,8 @@ static bool go_to_hand(core *c)
 {
   vec travel = spring_force(c);
   real turn = c->body.kappa > 0 ? c->hand.phi - c->theta : 0;
+  if (travel.x == 0 && travel.y == 0 && turn == 0)
+    return false;
   if (!c->opened_any) {
     if (move_free(c, travel, turn))
       return true;

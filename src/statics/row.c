@@ -60,23 +60,22 @@ static void core_result(void *memory, stic_hand h, bool held, stic_result *r)
 {
   core *c = memory;
   int order[CONTACTS_MAX];
-  double force_unit = held ? c->force_unit : 0;
   c->hand = hand_in(c, h);
   r->state = held ? contact_state(c) : STIC_RELEASED;
   world_place(c, c->p, &r->x, &r->y);
   r->theta = (double)c->theta;
-  vec f = spring_force(c);
   r->holding_x = h.x, r->holding_y = h.y;
-  if (held)
+  r->force_x = r->force_y = r->moment = r->residual = 0;
+  if (held) {
+    vec f = spring_force(c);
     world_place(c, holding_point(c), &r->holding_x, &r->holding_y);
-  r->force_x = (double)f.x * force_unit;
-  r->force_y = (double)f.y * force_unit;
-  r->moment = (double)spring_moment(c) * force_unit * c->unit;
-  for (int i = 0; i < c->contact_count && !held; i++)
-    c->forces[i] = v_make(0, 0);
-  if (held && is_wedged(c))
-    r->flags |= STIC_FLAG_WEDGED;
-  r->residual = held ? balance_residual(c, c->forces) : 0;
+    r->force_x = (double)f.x * c->force_unit;
+    r->force_y = (double)f.y * c->force_unit;
+    r->moment = (double)spring_moment(c) * c->force_unit * c->unit;
+    r->residual = balance_residual(c, c->forces);
+    if (is_wedged(c))
+      r->flags |= STIC_FLAG_WEDGED;
+  }
   r->contact_count = c->contact_count;
   sort_contacts(c, order);
   for (int i = 0; i < c->contact_count; i++) {
@@ -86,7 +85,7 @@ static void core_result(void *memory, stic_hand h, bool held, stic_result *r)
     to->vertex = k->vertex;
     to->surface = k->surface;
     world_place(c, k->place, &to->x, &to->y);
-    to->normal = (double)r_max(0, v_dot(c->forces[order[i]], s->n)) * force_unit;
-    to->friction = (double)v_dot(c->forces[order[i]], s->t) * force_unit;
+    to->normal = held ? (double)r_max(0, v_dot(c->forces[order[i]], s->n)) * c->force_unit : 0;
+    to->friction = held ? (double)v_dot(c->forces[order[i]], s->t) * c->force_unit : 0;
   }
 }

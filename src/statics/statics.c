@@ -23,7 +23,7 @@
 
 static hand hand_in(const core *c, stic_hand h)
 {
-  hand r = {local_place(c, h.x, h.y), (real)h.phi};
+  hand r = {v_add(local_place(c, h.x, h.y), c->grip.h), (real)h.phi + c->grip.phi};
   return r;
 }
 
@@ -94,10 +94,18 @@ static void core_init(void *memory, const stic_scene *scene, const stic_settings
   c->event_count = 0;
 }
 
-static void core_take(void *memory, double body_x, double body_y)
+static void core_take(void *memory, stic_hand h, const double *holding_point_given)
 {
   core *c = memory;
-  c->b = v_make((real)(body_x / c->unit), (real)(body_y / c->unit));
+  come_along(c); /* first, as the grip is known to the last bit only from where it was counted */
+  if (holding_point_given) {
+    c->b = v_make((real)(holding_point_given[0] / c->unit), (real)(holding_point_given[1] / c->unit));
+    c->grip = (hand){v_make(0, 0), 0};
+  } else {
+    vec at = local_place(c, h.x, h.y), arm = v_sub(at, c->p);
+    c->b = v_make(v_dot(c->rot, arm), v_cross(c->rot, arm));
+    c->grip = (hand){v_sub(holding_point(c), at), c->theta - (real)h.phi};
+  }
   c->window_open = false;
   c->sliding = false;
 }

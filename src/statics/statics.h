@@ -130,6 +130,7 @@ typedef struct core {
   real theta;
   vec rot;                        /* (cos theta, sin theta) */
   vec b;                          /* holding point, body coordinates [2] */
+  hand grip;                      /* what rounding left between hand and holding point when it was taken */
   contact contacts[CONTACTS_MAX]; /* in the order in which they touched */
   int contact_count;
   pair opened[PAIRS_MAX]; /* opened and not left yet: no new touch until they have */
