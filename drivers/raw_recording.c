@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #define FORMAT_VERSION 1
@@ -435,13 +436,15 @@ stic_raw_status stic_raw_peek(stic_raw_reader *r, stic_raw_record *record, stic_
 
 struct stic_raw_writer {
   int fd;
-  bool owned; /* fd is ours to close */
-  bool begun;
+  bool owned;    /* fd is ours to close */
+  bool head_due; /* nothing is written yet, and an older file still there */
+  bool begun;    /* a record is written */
   stic_raw_kind kind;
   int device;
   int64_t start_ns;
   char path[256];
   char line[STIC_RAW_BYTES_MAX * 3 + 64];
+  stic_raw_device about; /* device 0 */
 };
 
 static size_t put_bytes(const uint8_t *bytes, size_t length, char *out)
@@ -489,11 +492,18 @@ static stic_status write_text(stic_raw_writer *w, stic_error *err, const char *f
   return write_line(w, (size_t)n, err);
 }
 
-static stic_status write_head(stic_raw_writer *w, const stic_raw_device *device, stic_error *err)
+/* An older recording is lost only now, when there is something to put in its place. */
+static stic_status write_head(stic_raw_writer *w, stic_error *err)
 {
+  const stic_raw_device *device = &w->about;
+  struct stat st;
   stic_status status;
   size_t n;
 
+  w->head_due = false;
+  if (fstat(w->fd, &st) == 0 && S_ISREG(st.st_mode) && w->owned && ftruncate(w->fd, 0) != 0)
+    return stic_error_set(err, STIC_CANNOT_WRITE, w->path, 0, "cannot empty the older recording: %s",
+                          strerror(errno));
   if (w->kind == STIC_RAW_SERIAL)
     return write_text(w, err, "%s", STIC_RAW_FORMAT);
   status = write_text(w, err, "D: 0");
@@ -546,8 +556,7 @@ static bool resume(stic_raw_writer *w, const char *path)
   return w->fd >= 0 && cut_last_line(w->fd);
 }
 
-static stic_status begin_writer(stic_raw_writer *w, const char *path, const stic_raw_device *device,
-                                bool again, stic_error *err)
+static stic_status begin_writer(stic_raw_writer *w, const char *path, bool again, stic_error *err)
 {
   const bool standard_output = strcmp(path, "-") == 0;
 
@@ -558,10 +567,11 @@ static stic_status begin_writer(stic_raw_writer *w, const char *path, const stic
   }
   w->begun = false;
   w->device = 0;
-  w->fd = standard_output ? STDOUT_FILENO : open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  w->head_due = true;
+  w->fd = standard_output ? STDOUT_FILENO : open(path, O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (w->fd < 0)
     return stic_error_set(err, STIC_CANNOT_WRITE, path, 0, "cannot write: %s", strerror(errno));
-  return write_head(w, device, err);
+  return STIC_OK;
 }
 
 stic_status stic_raw_create(const char *path, stic_raw_kind kind, const stic_raw_device *device, bool again,
@@ -576,8 +586,10 @@ stic_status stic_raw_create(const char *path, stic_raw_kind kind, const stic_raw
     return stic_error_set(err, STIC_NO_MEMORY, path, 0, "out of memory");
   w->fd = -1;
   w->kind = kind;
+  if (device)
+    w->about = *device;
   snprintf(w->path, sizeof w->path, "%s", strcmp(path, "-") == 0 ? "standard output" : path);
-  status = begin_writer(w, path, device, again, err);
+  status = begin_writer(w, path, again, err);
   if (status != STIC_OK)
     stic_raw_finish(w, NULL);
   else
@@ -591,6 +603,12 @@ stic_status stic_raw_write(stic_raw_writer *w, int device, int64_t t_ns, const u
   size_t n;
 
   assert(length >= 1 && length <= STIC_RAW_BYTES_MAX && device >= 0 && device < STIC_RAW_DEVICES_MAX);
+  if (w->head_due) {
+    const stic_status status = write_head(w, err);
+
+    if (status != STIC_OK)
+      return status;
+  }
   if (w->kind == STIC_RAW_SERIAL) {
     n = stic_format_integer(t_ns, w->line);
   } else {

@@ -73,8 +73,8 @@ const stic_raw_device *stic_raw_reader_device(const stic_raw_reader *reader, int
 
 typedef struct stic_raw_writer stic_raw_writer;
 
-/* Creates a recording, replacing an existing file; each line is one write(), so that all but the last
- * survive a crash. `device` describes device 0 of a HID recording, NULL for serial. "-" is standard output. `again`:
+/* Creates a recording, which replaces an existing file at its first record; each line is one write(), so that all but
+ * the last survive a crash. `device` describes device 0 of a HID recording, NULL for serial. "-" is standard output. `again`:
  * goes on with a recording of the same kind that this program made, its times on the same clock; what is no such
  * recording is replaced. Errors: STIC_CANNOT_WRITE, STIC_NO_MEMORY. Real-time: no. */
 stic_status stic_raw_create(const char *path, stic_raw_kind kind, const stic_raw_device *device, bool again,
