@@ -1,6 +1,7 @@
 #include "number.h"
 
 #include <float.h>
+#include <inttypes.h>
 #include <locale.h>
 #include <math.h>
 #include <stdio.h>
@@ -19,6 +20,7 @@ typedef struct decimal {
 
 #define DIGITS_MAX 19 /* always fit into 64 bits */
 #define EXPONENT_CAP 100000
+#define DIGITS_NEEDED 768
 
 static bool is_digit(char c)
 {
@@ -90,28 +92,44 @@ static bool take_apart(const char *text, size_t length, decimal *d)
   return at == end;
 }
 
-/* The C library's conversion, with a point as the decimal sign whatever the caller's locale. */
-static bool parse_slowly(const char *text, size_t length, double *value)
+/* The same decimal in few characters: of the digits beyond DIGITS_NEEDED only matters whether one is not 0, as the middle
+ * between two doubles never has more than 767 significant ones. */
+static void shorten(const decimal *d, const char *text, size_t length, char *out)
 {
-  char small[128];
-  char *copy = length < sizeof small ? small : malloc(length + 1);
-  locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  bool done = false;
+  const char *const end = text + length;
+  int kept = 0;
+  bool rest = false;
 
-  if (copy && c_locale != (locale_t)0) {
-    const locale_t before = uselocale(c_locale);
-
-    memcpy(copy, text, length);
-    copy[length] = '\0';
-    *value = strtod(copy, NULL);
-    uselocale(before);
-    done = true;
+  *out++ = d->negative ? '-' : '+';
+  *out++ = '.';
+  for (const char *at = text; at < end && *at != 'e' && *at != 'E'; at++) {
+    if (!is_digit(*at) || (kept == 0 && *at == '0'))
+      continue;
+    if (kept < DIGITS_NEEDED) {
+      *out++ = *at;
+      kept++;
+    } else {
+      rest = rest || *at != '0';
+    }
   }
-  if (c_locale != (locale_t)0)
-    freelocale(c_locale);
-  if (copy != small)
-    free(copy);
-  return done;
+  sprintf(out, "%de%" PRId64, rest, d->exponent + d->kept);
+}
+
+/* The C library's conversion, with a point as the decimal sign whatever the caller's locale. */
+static bool parse_slowly(const decimal *d, const char *text, size_t length, double *value)
+{
+  char copy[DIGITS_NEEDED + 32];
+  const locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0); /* takes no memory */
+  locale_t before;
+
+  if (c_locale == (locale_t)0)
+    return false;
+  shorten(d, text, length, copy);
+  before = uselocale(c_locale);
+  *value = strtod(copy, NULL);
+  uselocale(before);
+  freelocale(c_locale);
+  return true;
 }
 
 stic_number_status stic_number_parse(const char *text, size_t length, double *value)
@@ -129,7 +147,7 @@ stic_number_status stic_number_parse(const char *text, size_t length, double *va
     v = (double)d.digits;
     v = d.exponent < 0 ? v / power[-d.exponent] : v * power[d.exponent];
     v = d.negative ? -v : v;
-  } else if (!parse_slowly(text, length, &v)) {
+  } else if (!parse_slowly(&d, text, length, &v)) {
     return STIC_NUMBER_NOT_PLAIN;
   }
   if (!isfinite(v))

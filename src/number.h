@@ -13,7 +13,7 @@ typedef enum stic_number_status {
 } stic_number_status;
 
 /* Each parses exactly text[0..length), which need not be terminated; `*value` is set on success only.
- * Real-time: no (rare long numbers are copied). */
+ * Allocates nothing. Real-time: no. */
 
 /* The double nearest to the decimal. What underflows becomes 0 or subnormal. */
 stic_number_status stic_number_parse(const char *text, size_t length, double *value);

@@ -236,6 +236,34 @@ static void test_numbers(void **state)
   }
 }
 
+/* The middle between two doubles to its last digit, and what a digit beyond it decides, however far. */
+static void test_long_numbers(void **state)
+{
+  enum { ROOM = 3000 };
+  char text[ROOM];
+
+  (void)state;
+  for (int i = 0; i < 3000; i++) {
+    const double low = ldexp(1 + (double)(i * 7919 % 4096) / 4096 + ldexp(1, -52) * (i % 3), i % 1060 - 1040);
+    const long double middle =
+      (long double)low + ((long double)nextafter(low, INFINITY) - (long double)low) / 2;
+    double expected, found = 0;
+    int length = snprintf(text, ROOM, i % 5 == 2 ? "%.*Le" : "%.*Lf", 1100, middle);
+
+    assert_in_range(length, 1, ROOM - 1000);
+    if (i % 5 != 2) {
+      memset(text + length, '0', (size_t)(i % 900));
+      length += i % 900;
+      text[length++] = (char)('0' + i % 2);
+      text[length] = '\0';
+    }
+    expected = strtod(text, NULL);
+    assert_int_equal(stic_number_parse(text, (size_t)length, &found), STIC_NUMBER_OK);
+    if (memcmp(&expected, &found, sizeof found) != 0)
+      fail_msg("%.17g, not %.17g: %s", found, expected, text);
+  }
+}
+
 static void test_recording(void **state)
 {
   const char *path = stic_test_path("r.csv");
@@ -290,7 +318,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_wrong_traces), cmocka_unit_test(test_tolerated), cmocka_unit_test(test_lenient),
     cmocka_unit_test(test_line_limit),   cmocka_unit_test(test_times),     cmocka_unit_test(test_numbers),
-    cmocka_unit_test(test_recording),
+    cmocka_unit_test(test_long_numbers), cmocka_unit_test(test_recording),
   };
 
   return cmocka_run_group_tests(tests, NULL, stic_test_clean_up);
