@@ -533,45 +533,56 @@ static bool cut_last_line(int fd)
   return end >= 0 && ftruncate(fd, end) == 0;
 }
 
-/* Goes on with a recording; false if there is none of this kind, or its clock is not told. */
-static bool resume(stic_raw_writer *w, const char *path)
+static stic_status cannot_write(const char *path, stic_error *err)
+{
+  return stic_error_set(err, STIC_CANNOT_WRITE, path, 0, "cannot write: %s", strerror(errno));
+}
+
+/* Goes on with a recording; `w->fd` stays -1 if there is none of this kind, or its clock is not told. Not knowing for lack
+ * of memory is an error, as what was recorded would be lost. */
+static stic_status resume(stic_raw_writer *w, const char *path, stic_error *err)
 {
   stic_raw_reader *reader;
   stic_raw_record record;
-  stic_raw_status status;
+  stic_raw_status read;
+  const stic_status status = stic_raw_open(path, &reader, NULL);
   bool good;
 
-  if (stic_raw_open(path, &reader, NULL) != STIC_OK)
-    return false;
+  if (status == STIC_NO_MEMORY)
+    return stic_error_set(err, status, path, 0, "out of memory");
+  if (status != STIC_OK)
+    return STIC_OK;
   do
-    status = stic_raw_next(reader, &record, NULL);
-  while (status == STIC_RAW_WAIT);
-  good = status == STIC_RAW_RECORD && reader->kind == w->kind &&
-         (w->kind == STIC_RAW_SERIAL || reader->clock_known);
+    read = stic_raw_next(reader, &record, NULL);
+  while (read == STIC_RAW_WAIT);
+  good =
+    read == STIC_RAW_RECORD && reader->kind == w->kind && (w->kind == STIC_RAW_SERIAL || reader->clock_known);
   w->start_ns = reader->clock_ns;
+  stic_raw_close(reader);
+  if (!good)
+    return STIC_OK;
   w->begun = true;
   w->device = -1; /* whose line came last is not known */
-  stic_raw_close(reader);
-  w->fd = good ? open(path, O_RDWR | O_APPEND | O_CLOEXEC) : -1;
-  return w->fd >= 0 && cut_last_line(w->fd);
+  w->fd = open(path, O_RDWR | O_APPEND | O_CLOEXEC);
+  return w->fd >= 0 && cut_last_line(w->fd) ? STIC_OK : cannot_write(path, err);
 }
 
 static stic_status begin_writer(stic_raw_writer *w, const char *path, bool again, stic_error *err)
 {
   const bool standard_output = strcmp(path, "-") == 0;
+  stic_status status = STIC_OK;
 
   w->owned = !standard_output;
-  if (again && (standard_output ? w->kind == STIC_RAW_SERIAL : resume(w, path))) {
-    w->fd = standard_output ? STDOUT_FILENO : w->fd;
-    return STIC_OK;
-  }
-  w->begun = false;
-  w->device = 0;
+  if (standard_output)
+    w->fd = STDOUT_FILENO;
+  else if (again)
+    status = resume(w, path, err);
+  if (status != STIC_OK || (again && w->fd >= 0 && (!standard_output || w->kind == STIC_RAW_SERIAL)))
+    return status;
   w->head_due = true;
-  w->fd = standard_output ? STDOUT_FILENO : open(path, O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
-  if (w->fd < 0)
-    return stic_error_set(err, STIC_CANNOT_WRITE, path, 0, "cannot write: %s", strerror(errno));
-  return STIC_OK;
+  if (!standard_output)
+    w->fd = open(path, O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  return w->fd < 0 ? cannot_write(path, err) : STIC_OK;
 }
 
 stic_status stic_raw_create(const char *path, stic_raw_kind kind, const stic_raw_device *device, bool again,

@@ -178,34 +178,53 @@ static void copy_string(const stic_gl *gl, GLenum name, char *out, size_t out_si
   snprintf(out, out_size, "%s", text ? (const char *)text : "unknown");
 }
 
-/* NULL, or why this way gives no context; nothing is left open then. */
-static const char *open_backend(stic_gl *gl, stic_gl_backend backend, const char *osmesa_library)
+/* The EGL display is shared by all contexts of the process, so it is not terminated. The
+ * library stays loaded: Mesa's threads and thread-local data do not survive unloading. */
+static void leave(struct stic_gl_context *c)
+{
+  if (c->osmesa_context)
+    c->osmesa.destroy(c->osmesa_context);
+  if (c->egl_context) {
+    c->egl.make_current(c->egl_display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    c->egl.destroy_context(c->egl_display, c->egl_context);
+  }
+  memset(c, 0, sizeof *c);
+}
+
+/* NULL, or why this way gives no context, which is empty then. */
+static const char *open_backend(stic_gl *gl, struct stic_gl_context *c, stic_gl_backend backend,
+                                const char *osmesa_library)
 {
   const char *problem;
 
   memset(gl, 0, sizeof *gl);
   gl->backend = backend;
-  gl->context = calloc(1, sizeof *gl->context);
-  if (!gl->context)
-    return "no memory for a context";
-  problem = backend == STIC_GL_OSMESA ? osmesa_open(gl->context, osmesa_library) : egl_open(gl->context);
+  gl->context = c;
+  problem = backend == STIC_GL_OSMESA ? osmesa_open(c, osmesa_library) : egl_open(c);
   if (!problem && !load_functions(gl))
     problem = "the OpenGL library lacks a function of OpenGL 3.3";
   if (problem)
-    stic_gl_close(gl);
+    leave(c);
   return problem;
 }
 
 stic_status stic_gl_open(stic_gl *gl, stic_gl_backend backend, const char *osmesa_library, stic_error *err)
 {
   stic_gl_backend first = backend == STIC_GL_EGL ? STIC_GL_EGL : STIC_GL_OSMESA;
-  const char *problem = open_backend(gl, first, osmesa_library);
+  struct stic_gl_context *c = calloc(1, sizeof *c);
+  const char *problem;
   stic_status status = STIC_OK;
 
-  if (problem && backend == STIC_GL_AUTO && !open_backend(gl, STIC_GL_EGL, NULL))
+  memset(gl, 0, sizeof *gl);
+  if (!c)
+    return stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "no memory for pictures");
+  problem = open_backend(gl, c, first, osmesa_library);
+  if (problem && backend == STIC_GL_AUTO && !open_backend(gl, c, STIC_GL_EGL, NULL))
     problem = NULL;
-  if (problem)
+  if (problem) {
+    stic_gl_close(gl);
     return stic_error_set(err, STIC_CANNOT_WRITE, NULL, 0, "no usable renderer: %s", problem);
+  }
   copy_string(gl, GL_RENDERER, gl->renderer, sizeof gl->renderer);
   copy_string(gl, GL_VERSION, gl->version, sizeof gl->version);
   if (!strstr(gl->renderer, "llvmpipe")) {
@@ -229,18 +248,9 @@ bool stic_gl_make_current(const stic_gl *gl)
 
 void stic_gl_close(stic_gl *gl)
 {
-  struct stic_gl_context *c = gl->context;
-
-  if (!c)
+  if (!gl->context)
     return;
-  if (c->osmesa_context)
-    c->osmesa.destroy(c->osmesa_context);
-  if (c->egl_context) {
-    c->egl.make_current(c->egl_display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-    c->egl.destroy_context(c->egl_display, c->egl_context);
-  }
-  /* The EGL display is shared by all contexts of the process, so it is not terminated. The library stays
-   * loaded: Mesa's threads and thread-local data do not survive unloading. */
-  free(c);
+  leave(gl->context);
+  free(gl->context);
   gl->context = NULL;
 }

@@ -89,7 +89,7 @@ typedef struct stic_gl {
 
 /* Opens a context and makes it current in the calling thread. `osmesa_library` names the OSMesa library
  * to load, NULL for the system's. STIC_CANNOT_WRITE with one message if there is no library, no core
- * 3.3, or the renderer is not llvmpipe; nothing is left open then. */
+ * 3.3, or the renderer is not llvmpipe; STIC_NO_MEMORY. Nothing is left open then. */
 stic_status stic_gl_open(stic_gl *gl, stic_gl_backend backend, const char *osmesa_library, stic_error *err);
 
 /* Makes the context current in the calling thread; cheap if it already is. False if it cannot be. */

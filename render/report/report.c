@@ -13,8 +13,8 @@
 
 /* ---- gathering ----------------------------------------------------------------------------- */
 
-/* A hidden name in the page's folder; none for a page that goes to a pipe. */
-static void choose_video_path(stic_report *r)
+/* A hidden name in the page's folder; none for a page that goes to a pipe. False without memory. */
+static bool choose_video_path(stic_report *r)
 {
   const char *path = r->settings.path, *slash = strrchr(path, '/');
   const char *name = slash ? slash + 1 : path;
@@ -22,10 +22,11 @@ static void choose_video_path(stic_report *r)
   struct stat st;
 
   if (strcmp(path, "-") == 0 || (stat(path, &st) == 0 && !S_ISREG(st.st_mode)))
-    return;
+    return true;
   r->video_path = malloc(room);
   if (r->video_path)
     snprintf(r->video_path, room, "%.*s.%.200s.%ld.mp4", (int)(name - path), path, name, (long)getpid());
+  return r->video_path != NULL;
 }
 
 stic_status stic_report_open(const stic_report_settings *settings, stic_report **report, stic_error *err)
@@ -34,18 +35,19 @@ stic_status stic_report_open(const stic_report_settings *settings, stic_report *
   stic_status status;
 
   *report = NULL;
-  if (!r)
-    return stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
   assert(settings->path && settings->scene && settings->solver && settings->fps > 0);
-  r->settings = *settings;
-  r->scene_text = stic_utf8_clean(settings->scene_text, strlen(settings->scene_text));
-  status = r->scene_text ? stic_outfile_open(settings->path, &r->out, err)
-                         : stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
+  if (r) {
+    r->settings = *settings;
+    r->scene_text = stic_utf8_clean(settings->scene_text, strlen(settings->scene_text));
+  }
+  if (!r || !r->scene_text || !choose_video_path(r))
+    status = stic_error_set(err, STIC_NO_MEMORY, NULL, 0, "out of memory");
+  else
+    status = stic_outfile_open(settings->path, &r->out, err);
   if (status != STIC_OK) {
     stic_report_close(r);
     return status;
   }
-  choose_video_path(r);
   *report = r;
   return STIC_OK;
 }

@@ -1,12 +1,12 @@
 /* What the page knows of the run, as JSON: scene, settings, files, version. */
 #include <errno.h>
-#include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #include "../../src/error.h"
+#include "../../src/io/json.h"
 #include "../../src/io/sha256.h"
 #include "report_data.h"
 
@@ -39,9 +39,9 @@ static json_t *scene_json(const stic_scene *s)
   json_t *vertices = json_array(), *surfaces = json_array();
 
   for (int i = 0; i < s->vertex_count; i++)
-    json_array_append_new(vertices, point_json(s->vertices[i]));
+    vertices = stic_json_append(vertices, point_json(s->vertices[i]));
   for (int i = 0; i < s->surface_count; i++)
-    json_array_append_new(surfaces, surface_json(&s->surfaces[i]));
+    surfaces = stic_json_append(surfaces, surface_json(&s->surfaces[i]));
   return json_pack("{s:o, s:o, s:o, s:f, s:f, s:f, s:s, s:o, s:f}", "name", text_json(s->name), "vertices",
                    vertices, "surfaces", surfaces, "depth", s->depth, "stiffness", s->stiffness,
                    "rotational_stiffness", s->rotational_stiffness, "hold",
@@ -57,7 +57,7 @@ static json_t *solver_json(const stic_report_settings *s)
   stic_settings_accuracy_text(s->solver, accuracy, sizeof accuracy);
   for (int i = 0; i < s->override_count; i++) {
     snprintf(text, sizeof text, "%s=%s", s->overrides[i].key, s->overrides[i].value);
-    json_array_append_new(set, text_json(text));
+    set = stic_json_append(set, text_json(text));
   }
   return json_pack("{s:s, s:s, s:f, s:o}", "accuracy", accuracy, "precision",
                    stic_precision_name(s->solver->precision), "h_min", s->solver->h_min, "set", set);
@@ -99,7 +99,7 @@ static json_t *columns_json(const stic_report *r)
   json_t *list = json_array();
 
   for (int i = 0; i < STIC_REPORT_COLUMN_COUNT; i++)
-    json_array_append_new(
+    list = stic_json_append(
       list, json_pack("[s, s, I]", names[2 * i], names[2 * i + 1], (json_int_t)r->columns[i].size));
   return list;
 }
@@ -117,7 +117,7 @@ static json_t *timing_json(const stic_timing *timing)
     const stic_histogram *h = &timing->stages[i];
 
     if (h->count > 0)
-      json_array_append_new(
+      stages = stic_json_append(
         stages, json_pack("{s:s, s:I, s:I, s:I, s:I, s:I}", "name", names[i], "count", (json_int_t)h->count,
                           "p50", (json_int_t)stic_histogram_quantile(h, 0.5), "p99",
                           (json_int_t)stic_histogram_quantile(h, 0.99), "p999",
@@ -139,7 +139,7 @@ static json_t *names_json(int count, const char *(*name)(int))
   json_t *list = json_array();
 
   for (int i = 0; i < count; i++)
-    json_array_append_new(list, json_string(name(i)));
+    list = stic_json_append(list, json_string(name(i)));
   return list;
 }
 

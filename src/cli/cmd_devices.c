@@ -1,9 +1,8 @@
 /* stiction devices: what is connected, what to type for it, and what stops it from opening. */
 #include "../../drivers/hid/hid_sysfs.h"
 #include "../../drivers/scan.h"
+#include "../io/json.h"
 #include "cli.h"
-
-#include <jansson.h>
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -148,7 +147,7 @@ static json_t *driver_json(const stic_driver *driver)
   json_t *keys = json_array();
 
   for (const stic_spec_key *key = driver->keys; key->name; key++)
-    json_array_append_new(
+    keys = stic_json_append(
       keys, json_pack("{s:s, s:b, s:s}", "name", key->name, "flag", key->flag, "about", key->about));
   return json_pack("{s:s, s:s, s:o}", "name", driver->name, "about", driver->about, "keys", keys);
 }
@@ -159,9 +158,9 @@ static int print_json(const findings *f, bool drivers_only)
   int result;
 
   for (int i = 0; i < f->count; i++)
-    json_array_append_new(devices, device_json(&f->devices[i]));
+    devices = stic_json_append(devices, device_json(&f->devices[i]));
   for (int i = 0; stic_driver_at(i); i++)
-    json_array_append_new(drivers, driver_json(stic_driver_at(i)));
+    drivers = stic_json_append(drivers, driver_json(stic_driver_at(i)));
   all = json_pack("{s:o*, s:o}", "devices", devices, "drivers", drivers);
   result = all ? json_dumpf(all, stdout, JSON_INDENT(1) | JSON_ENSURE_ASCII) : -1;
   json_decref(all);

@@ -1,11 +1,11 @@
 /* stiction explain: which parts of the model a scene can need, and why. */
 #include "../error.h"
+#include "../io/json.h"
 #include "../io/trace_csv.h"
 #include "../needs.h"
 #include "../number.h"
 #include "cli.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -272,14 +272,14 @@ static json_t *surfaces_json(const explanation *e)
                              "reachable", n->reach == STIC_REACH_POSSIBLE, "reach", reaches[n->reach]);
 
     if (n->reach == STIC_REACH_BEHIND)
-      json_object_set_new(item, "behind", json_integer(n->behind));
+      item = stic_json_set(item, "behind", json_integer(n->behind));
     if (n->reach == STIC_REACH_FAR) {
-      json_object_set_new(item, "least_gap", json_real(n->gap));
-      json_object_set_new(item, "only_unflagged", json_boolean(n->at_rest));
+      item = stic_json_set(item, "least_gap", json_real(n->gap));
+      item = stic_json_set(item, "only_unflagged", json_boolean(n->at_rest));
     }
     if (e->range.samples > 0)
-      json_object_set_new(item, "touches", json_integer(e->touches[s]));
-    json_array_append_new(list, item);
+      item = stic_json_set(item, "touches", json_integer(e->touches[s]));
+    list = stic_json_append(list, item);
   }
   return list;
 }
@@ -291,9 +291,9 @@ static json_t *pairs_json(const stic_needs *n)
   for (int i = 0; i < n->pair_count && i < STIC_NEEDS_PAIRS_MAX; i++) {
     const stic_pair_needs *p = &n->pairs[i];
 
-    json_array_append_new(list, json_pack("{s:i, s:i, s:b, s:b, s:b, s:b}", "first", p->first, "second",
-                                          p->second, "two_vertex", p->two_vertex, "corner", p->corner, "slot",
-                                          p->slot, "wedging", p->wedging));
+    list = stic_json_append(list, json_pack("{s:i, s:i, s:b, s:b, s:b, s:b}", "first", p->first, "second",
+                                            p->second, "two_vertex", p->two_vertex, "corner", p->corner,
+                                            "slot", p->slot, "wedging", p->wedging));
   }
   return list;
 }
@@ -309,7 +309,7 @@ static json_t *contacts_json(const stic_needs *n)
 
   for (size_t i = 0; i < sizeof sets / sizeof sets[0]; i++)
     if (sets[i].can)
-      json_array_append_new(list, json_string(sets[i].name));
+      list = stic_json_append(list, json_string(sets[i].name));
   return list;
 }
 

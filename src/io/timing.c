@@ -1,11 +1,11 @@
 #include "timing.h"
 
 #include "../error.h"
+#include "json.h"
 #include "outfile.h"
 
 #include <assert.h>
 #include <errno.h>
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -226,8 +226,8 @@ static json_t *misses_json(const stic_timing *timing)
   for (int i = 0; i < timing->miss_count; i++) {
     const stic_miss *miss = &timing->misses[i];
 
-    json_array_append_new(list, json_pack("{s:f, s:I, s:s}", "t", (double)miss->at_ns / NS_PER_S, "ns",
-                                          (json_int_t)miss->ns, "why", miss->why));
+    list = stic_json_append(list, json_pack("{s:f, s:I, s:s}", "t", (double)miss->at_ns / NS_PER_S, "ns",
+                                            (json_int_t)miss->ns, "why", miss->why));
   }
   return list;
 }
@@ -239,11 +239,11 @@ static json_t *timing_json(const stic_timing *timing, double seconds, const char
   char machine[512];
 
   for (int i = 0; i <= STIC_STAGE_FRAME; i++)
-    json_object_set_new(stages, names[i], stage_json(&timing->stages[i]));
+    stages = stic_json_set(stages, names[i], stage_json(&timing->stages[i]));
   for (int i = 0; i < STIC_DEVICE_RATES; i++)
-    json_object_set_new(over, rates[i].name, json_integer(timing->over[i]));
+    over = stic_json_set(over, rates[i].name, json_integer(timing->over[i]));
   for (int i = 0; i < timing->count_count; i++)
-    json_object_set_new(counts, timing->counts[i].name, json_integer(timing->counts[i].value));
+    counts = stic_json_set(counts, timing->counts[i].name, json_integer(timing->counts[i].value));
   return json_pack("{s:I, s:f, s:i, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:s, s:s}", "frames",
                    (json_int_t)timing->stages[STIC_STAGE_FRAME].count, "seconds", seconds, "target_hz",
                    STIC_TARGET_HZ, "missed", (json_int_t)timing->missed, "misses", misses_json(timing),

@@ -13,6 +13,7 @@
 
 static bool set_up(int fd)
 {
+  errno = EMFILE; /* too many for select() */
   return fd < FD_SETSIZE && fcntl(fd, F_SETFL, O_NONBLOCK) == 0 && fcntl(fd, F_SETFD, FD_CLOEXEC) == 0;
 }
 

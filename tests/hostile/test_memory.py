@@ -1,8 +1,10 @@
 """Every allocation of this project's own code fails once, and once with all after it, in every command: no crash, no
-leak, exit code 6 and one message, or all that had been asked for. FULL=1 leaves none out."""
+leak, exit code 6 and one message, or all that had been asked for. FULL=1 leaves none out (more than an hour); FIRST=N
+begins with the N-th command."""
 import os
 import shutil
 import subprocess
+import time
 
 from common import SCENE, STICTION, TRACE_HEAD, check, finish, folder, leftovers, path, read, rows, run, write
 
@@ -80,6 +82,8 @@ def sweep(command):
     usual, _, (count, left) = attempt(command)
     name = " ".join(command).replace(folder, ".")
     whole = files_of(path("out"))
+    if FULL:
+        print(time.strftime("%H:%M:%S"), count, name, flush=True)
     check(f"{name}: undisturbed", usual in (0, 4, 5) and left == 0 and count > 0, (usual, count, left))
     slow = command[0] == "bench" or "auto" in command or any("160x120" in a for a in command)
     for how in ("FAIL_AT", "FAIL_FROM"):
@@ -87,7 +91,7 @@ def sweep(command):
             code, lines, (_, left) = attempt(command, **{how: n})
             what = f"{name}: {how}={n} of {count}"
             check(f"{what}: code", code in (6, usual), (code, lines))
-            told = sum("memory" in line and "memory locked" not in line for line in lines)
+            told = sum("memory" in line and "memory locked" not in line and "the page draws" not in line for line in lines)
             check(f"{what}: message", code != 6 or told == 1 or (command[0] == "check" and told > 1), (code, lines))
             check(f"{what}: freed", left == 0, (left, lines))
             made = files_of(path("out"))
@@ -110,7 +114,8 @@ def sweep_others():
         check(f"{what}: freed", left == 0 or of_popt, left)
 
 
-total = sum(sweep(command) for command in COMMANDS)
+first = int(os.environ.get("FIRST", "0"))
+total = sum(sweep(command) for command in COMMANDS[first:])
 sweep_others()
-print(f"{total} allocations in {len(COMMANDS)} commands")
+print(f"{total} allocations in {len(COMMANDS) - first} commands")
 finish()
