@@ -1,31 +1,40 @@
 /* Text of the canvas: an embedded typeface baked once into coverage bitmaps, unhinted, on whole pixels. */
 #include "canvas.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "font_data.h"
 
-/* The library leaves signs out, asserts or crashes where memory is lacking. So all that it needs for one sign is had
- * before: 28 KiB at 8 px, 32 KiB at 154 px, the most in a picture of 4096 x 4096, and 42 KiB at 1000 px. */
-#define SCRATCH_BYTES (1 << 17)
+/* What the library needs while it draws one sign: 32 KiB at 154 px, the most in a picture of
+ * 4096 x 4096, and 42 KiB at 1000 px. Fonts so ask for
+ * memory three times and not for each of a sign's parts. */
+#define SCRATCH_SIZE (128 << 10)
+
 typedef struct scratch {
-  uint8_t *bytes;
   size_t used;
+  bool lacking; /* the library itself would leave the sign out */
+  union {
+    long double alignment;
+    char bytes[SCRATCH_SIZE];
+  } memory;
 } scratch;
 
-static void *take_scratch(size_t size, scratch *s)
+static void *take_memory(size_t size, scratch *s)
 {
-  uint8_t *at = s->bytes + s->used;
+  const size_t step = sizeof(long double), room = (size + step - 1) / step * step;
+  char *memory = s->memory.bytes + s->used;
 
-  assert(size <= SCRATCH_BYTES - s->used);
-  s->used += (size + 15) / 16 * 16;
-  return at;
+  if (room > SCRATCH_SIZE - s->used) {
+    s->lacking = true;
+    return NULL;
+  }
+  s->used += room;
+  return memory;
 }
 
-#define STBTT_malloc(size, user) take_scratch(size, user)
+#define STBTT_malloc(size, user) take_memory(size, user)
 #define STBTT_free(memory, user) ((void)(memory), (void)(user))
 #define STBTT_STATIC
 #define STB_TRUETYPE_IMPLEMENTATION
@@ -51,64 +60,87 @@ enum {
 typedef struct glyph {
   int left, top, width, height; /* px of the bitmap; left and top from the pen */
   double advance;               /* px */
-  uint8_t *coverage;            /* width * height; owned */
+  const uint8_t *coverage;      /* width * height */
 } glyph;
 
 struct stic_font {
   int ascent, height;
   glyph glyphs[GLYPH_COUNT];
+  uint8_t *coverage; /* of all; owned */
 };
 
-static bool draw_coverage(glyph *g, const stbtt_fontinfo *info, int code, float scale)
+static int code_of(int index)
 {
-  int advance, bearing, right, bottom;
+  return index < ASCII_COUNT ? ASCII_FIRST + index : signs[index - ASCII_COUNT];
+}
 
-  stbtt_GetCodepointHMetrics(info, code, &advance, &bearing);
-  stbtt_GetCodepointBitmapBox(info, code, scale, scale, &g->left, &g->top, &right, &bottom);
-  g->advance = (float)advance * scale;
-  g->width = right - g->left;
-  g->height = bottom - g->top;
-  if (g->width == 0 || g->height == 0)
-    return true;
-  g->coverage = malloc((size_t)g->width * (size_t)g->height);
-  if (!g->coverage)
-    return false;
-  stbtt_MakeCodepointBitmap(info, g->coverage, g->width, g->height, g->width, scale, scale, code);
-  return true;
+/* All but the bitmaps; returns how many bytes these take together. */
+static size_t measure(stic_font *font, const stbtt_fontinfo *info, float scale)
+{
+  size_t size = 0;
+  int ascent, descent, gap;
+
+  stbtt_GetFontVMetrics(info, &ascent, &descent, &gap);
+  font->ascent = (int)ceilf((float)ascent * scale);
+  font->height = (int)ceilf((float)(ascent - descent) * scale);
+  for (int i = 0; i < GLYPH_COUNT; i++) {
+    glyph *g = &font->glyphs[i];
+    int advance, bearing, right, bottom;
+
+    stbtt_GetCodepointHMetrics(info, code_of(i), &advance, &bearing);
+    stbtt_GetCodepointBitmapBox(info, code_of(i), scale, scale, &g->left, &g->top, &right, &bottom);
+    g->advance = (float)advance * scale;
+    g->width = right - g->left;
+    g->height = bottom - g->top;
+    size += (size_t)g->width * (size_t)g->height;
+  }
+  return size;
+}
+
+static void draw_all(stic_font *font, const stbtt_fontinfo *info, float scale)
+{
+  scratch *s = info->userdata;
+  uint8_t *at = font->coverage;
+
+  for (int i = 0; i < GLYPH_COUNT; i++) {
+    glyph *g = &font->glyphs[i];
+
+    s->used = 0;
+    stbtt_MakeCodepointBitmap(info, at, g->width, g->height, g->width, scale, scale, code_of(i));
+    g->coverage = at;
+    at += (size_t)g->width * (size_t)g->height;
+  }
 }
 
 stic_font *stic_font_create(bool bold, double pixels)
 {
-  stic_font *font = calloc(1, sizeof *font);
-  scratch s = {malloc(SCRATCH_BYTES), 0};
   stbtt_fontinfo info;
-  int ascent, descent, gap;
-  bool good = font && s.bytes && stbtt_InitFont(&info, bold ? stic_font_sans_bold : stic_font_sans, 0);
+  stic_font *font = calloc(1, sizeof *font);
+  scratch *s = malloc(sizeof *s);
+  bool good = font && s && stbtt_InitFont(&info, bold ? stic_font_sans_bold : stic_font_sans, 0);
 
   if (good) {
     const float scale = stbtt_ScaleForPixelHeight(&info, (float)pixels);
 
-    info.userdata = &s;
-    stbtt_GetFontVMetrics(&info, &ascent, &descent, &gap);
-    font->ascent = (int)ceilf((float)ascent * scale);
-    font->height = (int)ceilf((float)(ascent - descent) * scale);
-    for (int i = 0; good && i < GLYPH_COUNT; i++) {
-      s.used = 0;
-      good = draw_coverage(&font->glyphs[i], &info,
-                           i < ASCII_COUNT ? ASCII_FIRST + i : signs[i - ASCII_COUNT], scale);
-    }
+    s->lacking = false;
+    info.userdata = s;
+    font->coverage = malloc(measure(font, &info, scale));
+    if (font->coverage)
+      draw_all(font, &info, scale);
+    good = font->coverage && !s->lacking;
   }
-  free(s.bytes);
-  if (good)
-    return font;
-  stic_font_destroy(font);
-  return NULL;
+  free(s);
+  if (!good) {
+    stic_font_destroy(font);
+    font = NULL;
+  }
+  return font;
 }
 
 void stic_font_destroy(stic_font *font)
 {
-  for (int i = 0; font && i < GLYPH_COUNT; i++)
-    free(font->glyphs[i].coverage);
+  if (font)
+    free(font->coverage);
   free(font);
 }
 

@@ -204,7 +204,7 @@ stic_status stic_report_json(const stic_report *r, const stic_report_video *vide
   if (status != STIC_OK)
     return status;
   run = run_json(r, video, timing, sha256);
-  text = run ? json_dumps(run, JSON_COMPACT) : NULL;
+  text = stic_json_text(run, JSON_COMPACT);
   json_decref(run);
   *json = text ? escape_markup(text) : NULL;
   free(text);

@@ -257,7 +257,7 @@ stic_status stic_timing_write(const stic_timing *timing, double seconds, const c
                               const char *path, stic_error *err)
 {
   json_t *json = timing_json(timing, seconds, scheduling);
-  char *text = json ? json_dumps(json, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
+  char *text = stic_json_text(json, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
   stic_outfile *out = NULL;
   stic_status status;
 

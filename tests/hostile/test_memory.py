@@ -1,5 +1,5 @@
 """Every allocation of this project's own code fails once, and once with all after it, in every command: no crash, no
-leak, exit code 6 and one message, or all that had been asked for. FULL=1 leaves none out (more than an hour); FIRST=N
+leak, exit code 6 and one message, or all that had been asked for. FULL=1 leaves none out; FIRST=N
 begins with the N-th command."""
 import os
 import shutil
