@@ -145,7 +145,7 @@ int stic_cmd_bench(int argc, const char **argv)
     {"dump", '\0', POPT_ARG_STRING, &o.dump, 0, "extremes: write that case as scene.yaml and hand.csv",
      "FOLDER"},
     {"long", '\0', POPT_ARG_NONE, &o.long_form, 0,
-     "extremes: also ten million rows of standing still, and eight hours", NULL},
+     "extremes: also ten million rows of standing still at each place", NULL},
     /* A control: the table must fail if the solver's friction is not the formulas'. */
     {"spoil", '\0', POPT_ARG_DOUBLE | POPT_ARGFLAG_DOC_HIDDEN, &o.spoil, 0, NULL, NULL},
     POPT_TABLEEND};

@@ -45,7 +45,7 @@ typedef struct stic_trade_options {
 int stic_bench_trade(const stic_trade_options *options);
 
 typedef struct stic_extremes_options {
-  bool quick, long_form;     /* long_form: frames of standing still by millions, eight hours at 250 Hz */
+  bool quick, long_form;     /* long_form: ten million frames of standing still */
   int64_t random;            /* random frames in all precisions together, 0: none and all sweeps instead */
   uint64_t seed;             /* of the random cases */
   int64_t number;            /* only this case of the sweep or seed; -1: all */

@@ -139,12 +139,16 @@ static stic_sample sample_of(stic_extreme *e, int i, const stic_result *last)
   return s;
 }
 
+/* For files, if there are to be any. */
 static void remember(bench *b, const stic_sample *sample)
 {
+  if (!b->options->dump)
+    return;
   if (b->sample_count == b->sample_room) {
     const int room = b->sample_room * 2 + 256;
     stic_sample *more = realloc(b->samples, (size_t)room * sizeof *more);
 
+    b->no_memory = b->no_memory || !more;
     if (!more)
       return;
     b->samples = more;
