@@ -17,8 +17,9 @@
 static struct {
   int open_errno, ioctl_errno; /* 0: works */
   bool refuses;                /* hid_open_path() */
-  int answers[4];              /* of hid_read_timeout(): lengths, -1 */
-  int result;                  /* of what is written, or of a feature report */
+  bool no_memory;
+  int answers[4]; /* of hid_read_timeout(): lengths, -1 */
+  int result;     /* of what is written, or of a feature report */
   char path[STIC_HID_PATH_MAX];
   int waits[4], reads, closed;
   uint8_t sent[8];
@@ -41,6 +42,8 @@ static hid_device *device(void)
 
 /* ---- instead of hidapi and the kernel --------------------------------------------------------- */
 
+void *__real_malloc(size_t size);
+void *__wrap_malloc(size_t size);
 int __real_open(const char *path, int flags, ...);
 int __wrap_open(const char *path, int flags, ...);
 int __wrap_ioctl(int file, unsigned long request, ...);
@@ -50,6 +53,11 @@ int __wrap_hid_read_timeout(hid_device *opened, unsigned char *data, size_t leng
 int __wrap_hid_write(hid_device *opened, const unsigned char *data, size_t length);
 int __wrap_hid_send_feature_report(hid_device *opened, const unsigned char *data, size_t length);
 int __wrap_hid_get_feature_report(hid_device *opened, unsigned char *data, size_t length);
+
+void *__wrap_malloc(size_t size)
+{
+  return fake.no_memory ? NULL : __real_malloc(size);
+}
 
 int __wrap_open(const char *path, int flags, ...)
 {
@@ -172,6 +180,20 @@ static void test_refused(void **state)
   fake.refuses = true;
   snprintf(by, sizeof by, "cannot open " NODE " by hidapi-%s", stic_hid_system.name);
   expect_refused(by);
+}
+
+static void test_no_memory(void **state)
+{
+  stic_hid_handle *handle;
+  stic_error err;
+
+  (void)state;
+  fake.no_memory = true;
+  assert_int_equal(try_open(&handle, &err), STIC_NO_MEMORY);
+  fake.no_memory = false;
+  assert_null(handle);
+  assert_string_equal(err.message, "out of memory");
+  assert_string_equal(fake.path, "");
 }
 
 #ifdef STIC_HIDAPI_HIDRAW
@@ -308,6 +330,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test_setup(test_open_and_close, reset),
     cmocka_unit_test_setup(test_refused, reset),
+    cmocka_unit_test_setup(test_no_memory, reset),
 #ifdef STIC_HIDAPI_HIDRAW
     cmocka_unit_test_setup(test_node_is_asked_first, reset),
 #endif
