@@ -18,7 +18,6 @@
 static struct {
   stic_scene scene;
   stic_settings settings;
-  stic_sim *sim;
   stic_supervisor *device;
   stic_tracker tracker;
   const char *yaml, *tracker_yaml, *trace, *log, *poses, *older;
@@ -41,7 +40,6 @@ static void set_up(void)
   free(trace);
   assert_int_equal(stic_scene_read(given.yaml, NULL, 0, &given.scene, NULL), STIC_OK);
   stic_settings_init(&given.settings);
-  assert_int_equal(stic_sim_create(&given.scene, &given.settings, &given.sim, NULL), STIC_OK);
   assert_int_equal(stic_supervisor_open("sample", NULL, &given.device, NULL), STIC_OK);
   stic_tracker_settings_init(&tracker);
   stic_tracker_begin(&given.tracker, &tracker, STIC_DRIVER_POSE);
@@ -50,7 +48,6 @@ static void set_up(void)
 static void tear_down(void)
 {
   stic_supervisor_close(given.device);
-  stic_sim_destroy(given.sim);
 }
 
 static void finish_trace(stic_trace_writer *writer)
@@ -219,20 +216,27 @@ static void close_pictures(void *user)
   (void)user;
 }
 
+/* Each loop with a simulation of its own, as time begins anew. */
+static stic_sim *solver;
+
 static stic_status make_live(void **made, stic_error *err)
 {
   const stic_live_pictures pictures = {NULL, open_pictures, take_picture, flush, close_pictures};
-  const stic_live_settings settings = {.device = given.device,
-                                       .tracker = &given.tracker,
-                                       .sim = given.sim,
-                                       .events = true,
-                                       .output = {NULL, take_row, flush},
-                                       .pictures = &pictures,
-                                       .queue_samples = 16,
-                                       .queue_rows = 16};
-  stic_live *live = (stic_live *)(void *)&poison;
-  const stic_status status = stic_live_start(&settings, &live, err);
+  stic_live_settings settings = {.device = given.device,
+                                 .tracker = &given.tracker,
+                                 .events = true,
+                                 .output = {NULL, take_row, flush},
+                                 .pictures = &pictures,
+                                 .queue_samples = 16,
+                                 .queue_rows = 16};
+  stic_live *live = NULL;
+  stic_status status = stic_sim_create(&given.scene, &given.settings, &solver, err);
 
+  settings.sim = solver;
+  if (status == STIC_OK)
+    status = stic_live_start(&settings, &live, err);
+  if (status != STIC_OK)
+    stic_sim_destroy(solver);
   *made = live;
   return status;
 }
@@ -242,6 +246,7 @@ static void end_live(void *made)
   stic_live_report report;
 
   stic_live_finish(made, NULL, &report);
+  stic_sim_destroy(solver);
 }
 
 /* ---- the table ------------------------------------------------------------------------------- */
