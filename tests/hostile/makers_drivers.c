@@ -4,7 +4,7 @@
 #include "../../drivers/hid/hid_recording.h"
 #include "../../drivers/hydra/hydra_driver.h"
 #include "../../drivers/logitech/logitech_recording.h"
-#include "../../drivers/recorded.h"
+#include "../../drivers/recording/recorded.h"
 #include "../../drivers/spacemouse/spacemouse_driver.h"
 #include "../drivers/hid/fake_hid.h"
 #include "../drivers/logitech_emulator.h"
@@ -84,7 +84,6 @@ MAKE(recorded_puck, stic_recorded_open, stic_recorded, stic_recorded_close, give
 MAKE(raw_file, stic_raw_open, stic_raw_reader, stic_raw_close, given.serial)
 MAKE(raw_writer, stic_raw_create, stic_raw_writer, finish_raw, stic_test_path("raw.txt"), STIC_RAW_SERIAL,
      NULL, false)
-MAKE(hid_recording, stic_hid_recording_open, stic_hid_recording, stic_hid_recording_close, given.puck)
 
 static stic_status open_file(const char *driver, const char *path, const char *rest, void **made,
                              stic_error *err)
@@ -213,7 +212,7 @@ static stic_status make_serial_recording(void **made, stic_error *err)
   return status;
 }
 
-static stic_status make_hid_recording_begun(void **made, stic_error *err)
+static stic_status make_hid_recording(void **made, stic_error *err)
 {
   stic_hid_recording *recording = NULL;
   stic_raw_reader *reader;
@@ -223,6 +222,11 @@ static stic_status make_hid_recording_begun(void **made, stic_error *err)
     status = stic_hid_recording_begin(reader, given.puck, &recording, err);
   *made = recording;
   return status;
+}
+
+static void end_hid_recording(void *made)
+{
+  stic_hid_recording_close(made);
 }
 
 /* ---- the table ------------------------------------------------------------------------------- */
@@ -249,8 +253,7 @@ static const maker makers[] = {
   {"stic_raw_open", "", make_raw_file, end_raw_file},
   {"stic_raw_create", "", make_raw_writer, end_raw_writer},
   {"stic_raw_create", "again", make_raw_again, end_raw_again},
-  {"stic_hid_recording_open", "", make_hid_recording, end_hid_recording},
-  {"stic_hid_recording_begin", "", make_hid_recording_begun, end_hid_recording},
+  {"stic_hid_recording_begin", "", make_hid_recording, end_hid_recording},
   {"stic_logitech_recording_begin", "", make_serial_recording, end_device},
   {NULL, NULL, NULL, NULL},
 };
