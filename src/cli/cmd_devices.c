@@ -161,6 +161,10 @@ static int print_json(const findings *f, bool drivers_only)
     devices = stic_json_append(devices, device_json(&f->devices[i]));
   for (int i = 0; stic_driver_at(i); i++)
     drivers = stic_json_append(drivers, driver_json(stic_driver_at(i)));
+  if (!devices && !drivers_only) { /* no memory */
+    json_decref(drivers);
+    drivers = NULL;
+  }
   all = json_pack("{s:o*, s:o}", "devices", devices, "drivers", drivers);
   result = all ? json_dumpf(all, stdout, JSON_INDENT(1) | JSON_ENSURE_ASCII) : -1;
   json_decref(all);
