@@ -34,7 +34,7 @@ typedef struct bench_options {
 static bool extremes_only(const bench_options *o)
 {
   return o->picture || o->sweep || o->dump || o->random != NOT_GIVEN || o->number != NOT_GIVEN ||
-         o->long_form;
+         o->seed != NOT_GIVEN || o->long_form;
 }
 
 static int extremes(const stic_cli_args *args, const bench_options *o)
@@ -43,7 +43,7 @@ static int extremes(const stic_cli_args *args, const bench_options *o)
   const stic_extremes_options options = {.quick = o->quick != 0,
                                          .long_form = o->long_form != 0,
                                          .random = random ? o->random : 0,
-                                         .seed = (uint64_t)o->seed,
+                                         .seed = o->seed != NOT_GIVEN ? (uint64_t)o->seed : 1,
                                          .number = o->number != NOT_GIVEN ? o->number : -1,
                                          .sweep = o->sweep,
                                          .dump = o->dump,
@@ -54,6 +54,10 @@ static int extremes(const stic_cli_args *args, const bench_options *o)
 
   if ((random && o->random < 1) || (random && o->sweep)) {
     stic_cli_say("bench extremes: --random is a number of rows above 0, without --sweep");
+    return STIC_USAGE;
+  }
+  if ((random && o->long_form) || (!random && o->seed != NOT_GIVEN)) {
+    stic_cli_say("bench extremes: --seed goes with --random only, --long only without");
     return STIC_USAGE;
   }
   if (o->dump && (o->number < 0 || (!random && !o->sweep))) {
@@ -101,7 +105,8 @@ static int measure(const stic_cli_args *args, const bench_options *o)
     return STIC_USAGE;
   }
   if (extremes_only(o) && !extreme) {
-    stic_cli_say("bench %s has none of --picture, --sweep, --case, --dump, --random and --long", name);
+    stic_cli_say("bench %s has none of --picture, --sweep, --case, --dump, --random, --seed and --long",
+                 name);
     return STIC_USAGE;
   }
   if (stic_cli_check_paths(inputs, 2, outputs, 2, &err) != STIC_OK)
@@ -127,7 +132,8 @@ static int measure(const stic_cli_args *args, const bench_options *o)
 
 int stic_cmd_bench(int argc, const char **argv)
 {
-  bench_options o = {.spoil = 1, .seconds = NOT_GIVEN, .seed = 1, .random = NOT_GIVEN, .number = NOT_GIVEN};
+  bench_options o = {
+    .spoil = 1, .seconds = NOT_GIVEN, .seed = NOT_GIVEN, .random = NOT_GIVEN, .number = NOT_GIVEN};
   const struct poptOption table[] = {
     {"quick", '\0', POPT_ARG_NONE, &o.quick, 0, "Few repetitions: whether it works, not how fast", NULL},
     {"csv", '\0', POPT_ARG_STRING, &o.csv, 0,

@@ -452,6 +452,8 @@ static void test_bench(void **state)
   expect(stic_test_program("bench", "extremes", "--sweep", "shape", "--case", "99999", NULL), 2,
          "no case 99999");
   expect(stic_test_program("bench", "extremes", "--random", "1", "--picture", "x.png", NULL), 2, "of sweeps");
+  expect(stic_test_program("bench", "extremes", "--seed", "2", "--sweep", "still", NULL), 2, "--random only");
+  expect(stic_test_program("bench", "extremes", "--long", "--random", "9", NULL), 2, "only without");
   expect(stic_test_program("bench", "extremes", "--sweep", "shape", "--picture", "x.png", NULL), 2, "k_p-mu");
   expect(stic_test_program("bench", "devices", "--seconds", "0", NULL), 2, "expected 0.1 to");
 }
