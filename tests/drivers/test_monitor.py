@@ -185,6 +185,11 @@ def recording():
         for i in range(150):
             push = "5e 01 00 00 00 00" if i < 60 else "00 00 00 00 a2 fe"
             f.write(f"E: {i * 16 // 1000}.{i * 16 % 1000:03d}000 7 01 {push}\n")
+    m = Monitor("--device", f"recording:file={path},loop", "--ascii")
+    s = m.read(20, lambda s: s.pages > 2)
+    check("recording: ASCII where it is asked for", "SpaceNavigator" in s.text() and all(ord(c) < 127 for c in s.text()),
+          s.text())
+    m.end("--ascii", lambda: m.key("q"))
     m = Monitor("--device", f"recording:file={path},speed=2,loop", "--raw", utf8=False)
     s = m.read(20, lambda s: "GRIP" in s.text() and s.text().count(".") > 40)
     keep("recording", s)

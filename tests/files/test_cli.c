@@ -400,6 +400,35 @@ static void test_frames(void **state)
     0, "");
 }
 
+/* The clock shows in pictures of a replay only when it is asked for. */
+static void test_hud_timing(void **state)
+{
+  static const char *const names[] = {"hud-a", "hud-b", "hud-timing"};
+  char *text = stic_test_trace(3), *pictures[3];
+  const char *tiny_trace = stic_test_write("tiny.csv", text);
+  struct stat st[3];
+  char path[300];
+
+  (void)state;
+  free(text);
+  for (int i = 0; i < 3; i++) {
+    const char *folder = stic_test_path(names[i]);
+
+    expect(stic_test_program("replay", scene, tiny_trace, "--frames", folder, "--size", "640x360",
+                             i == 2 ? "--hud-timing" : NULL, NULL),
+           0, "");
+    snprintf(path, sizeof path, "%s/frame_000000.png", folder);
+    pictures[i] = stic_test_read(path);
+    assert_non_null(pictures[i]);
+    assert_int_equal(stat(path, &st[i]), 0);
+  }
+  assert_int_equal(st[0].st_size, st[1].st_size);
+  assert_memory_equal(pictures[0], pictures[1], (size_t)st[0].st_size);
+  assert_true(st[0].st_size != st[2].st_size || memcmp(pictures[0], pictures[2], (size_t)st[0].st_size) != 0);
+  for (int i = 0; i < 3; i++)
+    free(pictures[i]);
+}
+
 /* One picture per 1/31 s of the run, whether it was drawn or dropped. */
 static void test_run_frames(void **state)
 {
@@ -475,6 +504,7 @@ int main(void)
     cmocka_unit_test(test_no_sample),
     cmocka_unit_test(test_standard_streams),
     cmocka_unit_test(test_closed_pipe),
+    cmocka_unit_test(test_hud_timing),
     cmocka_unit_test(test_run_frames),
     cmocka_unit_test(test_frames),
     cmocka_unit_test(test_bench),
