@@ -24,7 +24,7 @@ static void keep(const core *c, last_pose *k)
 
 static void put_back(core *c, const last_pose *k)
 {
-  if (memcmp(k->origin, c->origin, sizeof k->origin) != 0)
+  if (k->origin[0] != c->origin[0] || k->origin[1] != c->origin[1])
     set_origin(c, k->origin);
   c->p = k->p, c->rot = k->rot, c->theta = k->theta;
   c->contact_count = k->contact_count, c->opened_count = k->opened_count;

@@ -545,7 +545,7 @@ static void least_norm_of_two(const core *c, vec *forces)
 static void start_inside(balance *q, real target[3], real *n, real *t)
 {
   generators g;
-  real away[3], weights[CONES_MAX];
+  real away[3], weights[CONES_MAX] = {0};
   cone_generators(q, &g);
   nearest_in_cone(&g, target, weights, away);
   for (int k = 0; k < 3; k++)
