@@ -55,8 +55,7 @@ typedef struct body {
   real radius;                     /* farthest vertex from the body's origin */
   surface surfaces[STIC_SURFACES_MAX];
   real world_extent; /* largest coordinate of surface points: sets rounding noise */
-  real
-    start_depth; /* what starts deeper in a surface than rounding here explains: by that of the world's coordinates */
+  real start_depth;  /* how deep it starts, by the rounding of the world's coordinates */
 } body;
 
 /* A function of an angle: k + c cos x + s sin x */
