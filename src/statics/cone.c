@@ -535,8 +535,8 @@ static void least_norm_of_two(const core *c, vec *forces)
     q = constraints_of(&l, balance_slack(c));
     feasible_interval(&q, &low, &high, tightest);
   }
-  if (low <= high)
-    x = r_max(low, r_min(high, x));
+  /* Crossed by rounding (N = 0 at a large mu_s): the member that is least outside. */
+  x = low <= high ? r_max(low, r_min(high, x)) : (low + high) / 2;
   forces[0] = v_mix(l.first, -x, l.d);
   forces[1] = v_mix(l.second, x, l.d);
 }

@@ -103,10 +103,12 @@ static vec flow_velocity(const core *c, const flow_rates *r, int vertex)
   return v_mix(r->g, r->theta, v_perp(v_sub(world_vertex(c, vertex), holding_point(c))));
 }
 
-/* A motion counts however slow it is: of what a balance may be off, only the load's rounding makes a speed. */
+/* A motion counts however slow it is: of what a balance may be off, only the load's rounding makes a speed, and that of
+ * the angles, which after many turns is the larger one. */
 static real speed_rounding(const core *c)
 {
-  return balance_slack(c) - TOLERANCE * c->body.size;
+  real angles = 4 * REAL_EPSILON * (r_abs(c->theta) + r_abs(c->hand.phi));
+  return balance_slack(c) + (angles - TOLERANCE) * c->body.size;
 }
 
 /* Does every contact stay in its mode at these rates? */
