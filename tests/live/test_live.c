@@ -194,8 +194,8 @@ static void a_silent_device_is_repeated(void **state)
     repeats += memcmp(b.samples[i].position, b.samples[i - 1].position, sizeof b.samples[i].position) == 0;
   assert_true(report.repeated > 10);
   assert_int_equal(report.repeated, repeats);
-  /* No less than between the first sample and the last frame, and nothing of the time to get ready. */
-  assert_true(report.seconds * 1e9 > (double)(b.samples[b.rows - 2].t_ns - 100 * MS));
+  /* About from the first sample (the reader may have been late for it) to the last frame, nothing of the time to get ready. */
+  assert_true(report.seconds * 1e9 > (double)(b.samples[b.rows - 2].t_ns - 1000 * MS));
   assert_true(report.seconds * 1e9 < (double)(stic_clock_ns() - start_ns));
   check_rows(&b);
   end(&b);
