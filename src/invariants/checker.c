@@ -148,12 +148,14 @@ static void check_balance(stic_checker *k, const row *w, const load *sum)
 {
   const stic_result *r = w->r;
   const double k_p = k->scene->stiffness, k_theta = k->scene->rotational_stiffness, largest = sum->largest;
-  double allowed =
-    largest_of(4096 * k->ulp, 16 * DBL_EPSILON) * largest + k_p * w->rounding + 1e-12 * k_p * k->size;
-  double off = hypot(sum->fx, sum->fy), off_moment = fabs(sum->moment) / largest_of(k->size, sum->reach);
-  /* The arm's rounding times the force, and the angle's times k_theta. */
+  /* The angle's rounding times k_theta, also in forces of contacts, which follow from the moment. */
   double angle = 8 * largest_of(k->ulp, DBL_EPSILON) * (fabs(r->theta) + fabs(r->hand_theta));
-  double allowed_moment = allowed + largest * w->rounding / k->size + k_theta * angle / k->size;
+  double stiff = k_theta * angle / k->size;
+  double allowed = largest_of(4096 * k->ulp, 16 * DBL_EPSILON) * largest + k_p * w->rounding +
+                   1e-12 * k_p * k->size + (r->contact_count > 0 ? stiff : 0);
+  double off = hypot(sum->fx, sum->fy), off_moment = fabs(sum->moment) / largest_of(k->size, sum->reach);
+  /* The arm's rounding times the force. */
+  double allowed_moment = allowed + largest * w->rounding / k->size + (r->contact_count > 0 ? 0 : stiff);
   if (r->state == STIC_FREE && k_theta == 0)
     off_moment = 0;
   k->worst_relative_residual = largest_of(k->worst_relative_residual, largest_of(off, off_moment) / largest);
